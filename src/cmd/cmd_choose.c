@@ -188,8 +188,7 @@ static Status give(const Args *args, const Run *run, const Picks *p, Err *err)
     document_free(&d);
     if (p->n_left == 0)
         THEN(status, fail(err, STATUS_UNMET,
-                          "no design of the front is within the limits; `imtet optimize` with search.limits searches "
-                          "for some"));
+                          "no design of the front is within the limits; search for some with search.limits"));
     return status;
 }
 

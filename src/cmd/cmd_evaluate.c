@@ -435,8 +435,7 @@ static const ArgOption OPTIONS[] = {
     VALUE("--pelicun", "FILE",
           "peaks of every floor, a row per record: demand CSV of pelicun, or of EE-UQ if named response.csv"),
     VALUE("--svg", "FILE",
-          "with FROM:STEP:TO, drawn by Chromium: response against intensity with 16 %, median and 84 %, or "
-          "fragilities"),
+          "with FROM:STEP:TO, by Chromium: response (16 %, median, 84 %) against intensity, or fragilities"),
     SWITCH("--full-model", "simulate all degrees of freedom of the building's frame too"),
     OPTION_END,
 };

@@ -156,7 +156,10 @@ static void say_run(Document *d, const Run *run, const StudySummary *summary)
                  summary->n_simulated, summary->n_failed, summary->seconds, stop_reason_words(summary->stopped));
     const char *reason = evaluation_table_failures(&run->table, &n_failed, &most);
     if (n_failed > 0)
-        document_say(d, "p", "%zu of %zu failures: %s", most, n_failed, reason);
+        document_say(d, "p",
+                     2 * n_failed > summary->n_simulated ? "warning: most simulations failed; %zu of %zu failures: %s"
+                                                         : "%zu of %zu failures: %s",
+                     most, n_failed, reason);
     if (run->n_repeats > 0)
         document_say(d, "p", "%zu of the simulations repeat a design, to average the noise (search.replicate_share)",
                      run->n_repeats);

@@ -123,8 +123,7 @@ static const ArgOption OPTIONS[] = {
     VALUE("--dossier", "FILE", "write a document for the checker of the design instead of the page, .html or .pdf"),
     VALUE("--design", "ID", "the design shown in detail: an id of the run, knee (default) or best_NAME"),
     VALUES("--record", "FILE",
-           "further earthquakes for the design: a file, or all of a folder or list; may be repeated (default: the "
-           "built-in ones)"),
+           "further earthquakes for the design, a file, folder or list; may be repeated (default: built-in ones)"),
     SWITCH("--json", "print where the page was written, as an object"),
     SWITCH("--no-engine", "leave out the simulator and the records, so that the page cannot simulate"),
     OPTION_MOVED,

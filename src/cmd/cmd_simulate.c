@@ -164,8 +164,7 @@ static Status give_horizon(const Args *args, const Problem *p, const Horizon *h,
         else
             document_say(&d, "p", "  %-8g after %.4g s", HORIZON_LEVEL[i], h->reached_s[i]);
     document_say(&d, "p",
-                 "distance: square root of the energy of the difference over the largest energy so far; at "
-                 "the end %.2g",
+                 "distance: root of the energy of the difference over the largest energy so far; at the end %.2g",
                  h->distance_at_end);
     figures_replicates(document_table(&d), tower_measures(tower_of(p)), r, NULL);
     return document_give(&d, args, err);
@@ -307,8 +306,7 @@ static const ArgOption OPTIONS[] = {
     SETTING("--replicates", "N", "sim.replicates",
             "replicates as in a study, under motion.record and motion.records: mean and standard deviation"),
     SWITCH("--sensitivity",
-           "how each result changes with gaps, thickness, contact and damping, with an error that --replicates "
-           "reduces"),
+           "how each result changes with gaps, thickness, contact and damping; --replicates reduces its error"),
     SWITCH("--horizon",
            "predictability horizon: the time until two nearly equal runs diverge; standard deviation of every result "
            "with gaps 1 um off"),

@@ -193,9 +193,7 @@ static void say_run(Document *d, const char *folder, const Run *run, const Stand
     json_object_del(described, "process");
     document_list(d, described);
     if (s->n_lost > 0)
-        document_say(d, "p",
-                     "its file `lock` says that %zu more evaluations were stored: the journal run.sqlite-wal is "
-                     "missing",
+        document_say(d, "p", "its file `lock` says that %zu more evaluations were stored: run.sqlite-wal is missing",
                      s->n_lost);
     snprintf(more, sizeof more, isfinite(e.busy) ? "; threads %.1f %% busy" : "", 100.0 * e.busy);
     if (isfinite(e.waiting))

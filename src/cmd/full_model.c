@@ -119,9 +119,7 @@ static Status check_wishes(const Args *args, Settings *s, const Run *run, Err *e
     TRY(args_alone(args, "--full-model", "--csv --svg --replicates", err));
     if (!frame_is(s->building.model))
         return bad_data(
-            err,
-            "building.model: %s has no degrees of freedom besides its floors; only a plane frame (nodes.csv) and "
-            "guyan have",
+            err, "building.model: %s has no degrees of freedom besides its floors; a frame (nodes.csv) or guyan has",
             s->building.model);
     TRY(pga ? settings_put(s, "motion.pga_g", pga, err) : STATUS_OK);
     TRY(settings_check(s, err));

@@ -115,7 +115,10 @@ void manual_write(const Command *c, FILE *out)
     roff(out, ".TH imtet%% 1 \"" IMTET_DATE "\" \"imtet %\" \"User commands\"\n", dash, name, program_version());
     roff(out, ".SH NAME\nimtet%% \\- %\n.SH SYNOPSIS\n\\fBimtet %\\fR % [options]\n.SH DESCRIPTION\n%\n.SH %\n", dash,
          name, c ? c->summary : "earthquake protection by impacts between a tower and an inner core", name,
-         c ? operand_of(c) : "COMMAND", c ? c->details : "Each command has a page of its own.",
+         c ? operand_of(c) : "COMMAND",
+         c ? c->details
+           : "Simulates a tower that collides with its core and searches "
+             "for the best designs. Each command has its own page.",
          c ? "OPTIONS" : "COMMANDS");
     for (const ArgOption *o = c ? c->options : &(ArgOption){0}; o->name; o++)
         roff(out, ENTRY, o->name, o->value ? o->value : "", o->help);

@@ -86,8 +86,7 @@ static const Option OPTIONS[] = {
     CHOICE(building.rigid_floors, Switch, SWITCH_LIST, "on",
            "frames: on: the nodes of a floor move sideways together; off: beams stretch"),
     CHOICE(building.elastic, Elastic, ELASTIC_LIST, "only",
-           "OpenSees models: only: materials that yield are refused; initial: they are taken by their initial "
-           "stiffness"),
+           "OpenSees models: only: materials that yield are refused; initial: their initial stiffness is taken"),
     WHOLE(building.modes, "0", 0, 100000,
           "frames: fixed-interface modes kept beside the floors (Craig-Bampton), 100000: all degrees of freedom; 0: "
           "condensed to the floors (Guyan)"),
@@ -96,8 +95,7 @@ static const Option OPTIONS[] = {
     REAL(building.yield_drift, "-", "0", 0, 1,
          "interstorey drift over height at which a storey yields, unless storeys.csv says; 0: no storey yields"),
     REAL(building.hardening, "-", "0.05", 0, 0.999,
-         "share of a storey's stiffness that is left after yielding; raised, with a warning, if the building would "
-         "not stand"),
+         "share of a storey's stiffness left after yielding; raised, with a warning, if the building would fall"),
     CHOICE(building.hysteresis, Hysteresis, HYSTERESIS_LIST, "bilinear",
            "law of storeys that yield: bilinear; bouc_wen: rounded, and it may degrade"),
     REAL(building.bouc_wen_exponent, "-", "10", 0.1, 100,
@@ -297,8 +295,7 @@ static const Option OPTIONS[] = {
     WHOLE(search.initial, "0", 0, 1000000,
           "designs of the initial Latin hypercube, at most max_evals; 0: by the number of variables"),
     PATH_LIST(search.start, "none",
-              "initial designs: CSVs with a column per variable, folders of runs, whose fronts are taken, or a list "
-              "of these",
+              "initial designs: CSVs with a column per variable, folders of runs (their fronts), or a list",
               .flags = SETTING_FREE),
     WHOLE(search.max_evals, "2000", 4, 1e8, "stop after so many simulations", .flags = SETTING_BASIC | SETTING_LIMIT),
     REAL(search.max_hours, "h", "0", 0, 1e4,
@@ -324,8 +321,7 @@ static const Option OPTIONS[] = {
     WHOLE(search.replicates_max, "4", 1, 1000,
           "noisy evaluations: largest number of simulations of a design; 1: no replicates"),
     WHOLE(search.polish, "3", 0, 32,
-          "designs polished at the end, with a tenth more simulations; none if these are too few or the problem is "
-          "noisy"),
+          "designs polished at the end, with a tenth more simulations; none if these are too few or noisy"),
     TEXT(search.objectives, "auto",
          "tower: results to optimize, a comma list of columns (results/README.md); paper: its seven; auto: those of "
          "them that the building has; also p(NAME>NUMBER), the probability that one is exceeded",
