@@ -76,14 +76,14 @@ typedef struct {
 typedef enum { TABLE_PLAIN, TABLE_HEADED, TABLE_WORDS } TableForm;
 Status table_read(Table *t, const char *path, TableForm form, Err *err);
 
-/* The same from text in memory; `path` only names it in messages. */
+/* Reads a table from text in memory; `path` only names it in messages. */
 Status table_parse(Table *t, const char *path, const char *text, size_t length, TableForm form, Err *err);
 
 /* Column of that name, or -1. */
 int table_column(const Table *t, const char *name);
 void table_free(Table *t);
 
-/* Of words: the text of a cell; empty where there is no such column. */
+/* Text of a cell of words; empty if there is no such column. */
 const char *sheet_text(const Table *s, size_t row, const char *column);
 
 /* The number of a cell; `otherwise` where column or content are missing. NAN as `otherwise`: it must be there. */

@@ -6,7 +6,7 @@
  * Threads  an Err belongs to one thread; nothing here is shared. */
 #pragma once
 
-/* What nearly every file takes of the C library, for all that include this. */
+/* Headers of the C library that nearly every file needs. */
 #include <math.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -33,7 +33,7 @@ typedef enum {
         STATUS_COUNT
 } Status;
 
-/* What a caller may decide by beside the code; never by the words. */
+/* A second code for callers that must decide more finely; they never decide by the words. */
 typedef enum {
     SUB_NONE,
     SUB_DAMAGED,   /* a run's database that is not what was written */

@@ -17,7 +17,7 @@ Status args_parse(Args *args, const Command *command, int argc, char *const argv
 const char *args_value(const Args *args, const char *name); /* NULL when it was not given */
 int args_has(const Args *args, const char *name);
 
-/* What the command does: its run, then run_of with the run of its operand, which is read for it. */
+/* Executes the command: its run, then run_of with the run of its operand, which is read first. */
 Status command_run(const Args *args, Err *err);
 
 /* The values of an option that may be repeated, one call after the other; i begins at 0, NULL: no more. */
@@ -33,7 +33,7 @@ Status args_alone(const Args *args, const char *name, const char *others, Err *e
 int args_gives(const Args *args, const char *key); /* a setting, by an option of its own or by --set */
 void args_free(Args *args);
 
-/* Of --set motion.record=PATH, motion.records=PATHS and motion.forces=PATH; nothing else may be set. */
+/* Reads --set motion.record=PATH, motion.records=PATHS and motion.forces=PATH; nothing else may be set. */
 Status args_moved(const Args *args, RecordPaths *moved, Err *err);
 
 /* "unknown WHAT WORD; did you mean ...?" */

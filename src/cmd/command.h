@@ -16,7 +16,7 @@ typedef struct {
 
 typedef struct Args Args;
 
-/* Of the help; what has none is not shown there. */
+/* Groups of the help; a command without a group is not shown. */
 typedef enum { GROUP_NONE, GROUP_PREPARE, GROUP_STUDY, GROUP_DECIDE, N_GROUPS } CommandGroup;
 
 typedef struct {

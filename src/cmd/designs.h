@@ -17,7 +17,7 @@
 #define DESIGN_WORDS  "FILE, FILE:N (row or id), RUN:ID, RUN:knee or RUN:best_NAME"
 #define DESIGN_OF_RUN "an id of the run, knee or best_NAME; FILE:N, OTHER:ID"
 
-/* What a run knows of a measure of a design that cannot be predicted; sd 0: nothing. */
+/* A measure of an unpredictable design as the run knows it; sd 0: unknown. */
 typedef struct {
     double value, sd;
 } Known;
@@ -33,17 +33,17 @@ void known_raise(const Known known[], const SimResult *r, double sd[]);
 Status designs_take(Designs *d, const char *word, const DesignSpace *space, Settings *s, int as_known, Known known[],
                     Err *err);
 
-/* The same where one design is wanted: a file of several is refused. */
+/* Reads one design; a file of several is refused. */
 Status designs_take_one(Designs *d, const char *word, const DesignSpace *space, Settings *s, int as_known,
                         Known known[], Err *err);
 
-/* The same of a problem that is no tower: a file has a column for every variable, in any order, with words of
- * choices; one of them is chosen by its row. */
+/* Reads designs of another problem than the tower: a file has a column for every variable, in any order, with words of
+ * choices; FILE:ROW chooses one of them. */
 Status designs_of_problem(Designs *d, const char *word, const Schema *schema, Err *err);
 
 long design_number(const Designs *d, size_t i); /* as the run numbers it, else that of its row, from 1 */
 
-/* Of design i as a table shows it: "design 417" of a run or a table with ids, else "my.csv:1"; without designs "no
+/* Label of design i in a table: "design 417" of a run or a table with ids, else "my.csv:1"; without designs "no
  * core". */
 enum { DESIGN_LABEL_MAX = 160 };
 void design_label(const Designs *d, const char *word, size_t i, char label[DESIGN_LABEL_MAX]);

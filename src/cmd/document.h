@@ -31,7 +31,7 @@ json_t *document_table(Document *d);        /* an empty one, borrowed; without r
 void document_list(Document *d, json_t *o); /* a line for every member that is neither empty nor rows */
 void document_draw(Document *d, const char *name, const char *caption); /* DRAWINGS of web/app/8-paper.js; HTML alone */
 
-/* What the options ask for: --csv, --svg, --json; the text where nothing else goes to standard output. */
+/* Writes what the options ask for, --csv, --svg, --json, and the text if standard output is free. */
 Status document_give(Document *d, const Args *args, Err *err);
 void document_print(Document *d, FILE *out);
 void document_html(Document *d, FILE *out);

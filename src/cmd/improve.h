@@ -26,9 +26,9 @@ Status improve_store(Improve *m, const Evaluation *design, Err *err);
 /* A row of the report: design i of the path, 0 or its id. */
 void improve_row(const Improve *m, json_t *table, const char *label, size_t i, long id);
 
-/* What it cost, in a line. */
+/* Says the cost in a line. */
 void improve_cost(Document *d, const char *before, const ImproveCost *c);
 
-/* What the deviations are of, the cost, the id of what was stored, and the knee where it has moved: other commands name
- * a design by it. */
+/* Says what the deviations are of, the cost, the id of the stored design, and the new knee, by which other commands
+ * name a design. */
 void improve_say(Document *d, const Improve *m);

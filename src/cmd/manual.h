@@ -12,6 +12,6 @@ void usage_write(FILE *out);      /* `imtet --help` */
 /* A page for man; NULL: imtet(1). */
 void manual_write(const Command *command, FILE *out);
 
-/* Of that name; else the nearest is suggested. An old name is told on standard error, and `option` is then the option
- * that it stands for, or NULL. */
+/* Finds the command of that name; else the message suggests the nearest. An old name is noted on standard error, and
+ * `option` is the option that it stands for, or NULL. */
 Status command_find(const char *word, const Command **found, const char **option, Err *err);

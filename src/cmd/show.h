@@ -63,11 +63,11 @@ json_t *figures_design(json_t *table, const char *label, long id, const Schema *
 /* A row of every case that designs are compared with. */
 void figures_baselines(json_t *table, const Schema *schema, const Baseline baseline[N_SCENES]);
 
-/* Of a front: designs beyond the contact law; by floor those whose gap is on a bound of the search; floors whose gap
- * closes in none of the designs that were simulated again, where some were. */
+/* Review of a front: designs beyond the contact law; by floor the designs whose gap is on a bound of the search; floors
+ * whose gap closes in none of the designs that were simulated again, if there are any. */
 json_t *json_review(const FrontReview *r);
 
-/* What a design of the run comes to (report/verdict.h), or why that is not known; nothing where there is no tower.
+/* Verdict on a design of the run (report/verdict.h), or why there is none; nothing without a tower.
  * used: the settings of the run, its records where they are now; NULL: those of the run. */
 void document_verdict(Document *d, const Run *run, size_t row, const Settings *used);
 
@@ -76,7 +76,7 @@ void document_verdict(Document *d, const Run *run, size_t row, const Settings *u
 /* "warning: KEY: TEXT" on standard error; user is not read. */
 void warn_on_stderr(const char *key, const char *text, void *user);
 
-/* Of a tower: a record that counts twice. */
+/* Warns of a record that counts twice. */
 void warn_of_settings(const Settings *s, WarnFn warn, void *user);
 
 /* Designs of --design: the first gap that does not close. */

@@ -5,7 +5,7 @@
 
 #include "cmd/document.h"
 
-/* What is on, what is left out, and what each changes; borrowed. */
+/* Says which effects are on, which are left out, and what each changes; `model` is borrowed. */
 void document_model(Document *d, const json_t *model);
 
 /* At the end: whether it is enough for the designs that the study names, and what to do where it is not; NULL: the

@@ -106,7 +106,7 @@ Status evaluation_table_add(EvaluationTable *t, Evaluation **row, Err *err);
 
 Status evaluation_table_give_room(Evaluation *row, Err *err); /* for its reason */
 
-/* The same filled with a copy of `from`, whose shapes are those of the table; NULL arrays are not known. */
+/* Appends a copy of `from`, whose shapes are those of the table; NULL arrays are unknown. */
 Status evaluation_table_append(EvaluationTable *t, const Evaluation *from, Err *err);
 
 /* The commonest reason of those that failed, how many have it, and how many failed. */

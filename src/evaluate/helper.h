@@ -15,7 +15,7 @@
 
 #include "base/status.h"
 
-/* What a worker is. */
+/* How a worker is started. */
 typedef struct {
     char *const *words;                     /* a command, up to NULL; NULL: */
     void (*serve)(void *self, size_t slot); /* ... in a fork of us */

@@ -125,9 +125,9 @@ typedef enum {
         MEASURES_LISTED
 } MeasureId;
 
-/* Behind those of the list, only where search.objectives or search.limits name them: chances p(NAME>NUMBER), of what is
- * better when it is more p(NAME<NUMBER), of a simulation 1 where that is so and else 0, so that their mean over all
- * records and replicates is a probability, whatever sim.robust says. */
+/* Chances follow the list where search.objectives or search.limits name them: p(NAME>NUMBER), or p(NAME<NUMBER) of a
+ * measure that is better when larger. One simulation gives 1 or 0, so that the mean over all records and replicates is
+ * a probability, whatever sim.robust says. */
 enum { N_MEASURES = MEASURES_LISTED + CHANCES_MAX };
 
 typedef struct {
@@ -158,7 +158,7 @@ int measures_borne(int id[MEASURES_LISTED]);     /* what has to be borne; return
 int measure_is_share(int k);                     /* of 1, where a number above it is meant as per cent */
 double measure_value(const SimResult *r, int k); /* natural sign and unit; NAN: not known */
 
-/* What is kept of a simulation: a part of a design in the queue, also between machines. */
+/* The part of a simulation that is kept: a part of a design in the queue, also between machines. */
 typedef struct {
     double value[N_MEASURES]; /* natural; NAN: not known */
     double seconds;
@@ -200,7 +200,7 @@ void measures_chances(const MeasureOrder *order, SimResult *r);
  * STATUS_BAD_DATA, a name that is none or stands there twice, more than CHANCES_MAX chances. */
 Status measures_order(MeasureOrder *out, const char *objectives, const char *limits, int n_floors, Err *err);
 
-/* What a building of n_floors does not have of the objectives, in words: left out by `auto`, or asked for all the same;
+/* Objectives that a building of n_floors does not have, in words, whether `auto` leaves them out or they are asked for;
  * NULL: it has all. */
 const char *measures_missing(const MeasureOrder *order, const char *objectives, int n_floors);
 

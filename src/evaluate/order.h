@@ -40,5 +40,5 @@ size_t order_write(Order *to, const Worker *w, size_t n_var);
 /* As `worker`; the answer, to be freed, NULL: there is no memory. */
 Answer *order_do(Order *order, size_t worker, const Doer *doer, size_t *n_bytes);
 
-/* What an answer of n_bytes says of the worker's tasks; 0: it is none to them. */
+/* Takes an answer of n_bytes to the worker's tasks; 0: it answers none of them. */
 int order_take(const Answer *answer, size_t n_bytes, Worker *w);

@@ -19,7 +19,7 @@
 
 enum { LINE_MAX_BYTES = 1 << 20 };
 
-/* What is under way in a process, when no more is wanted. */
+/* Time for tasks under way in a process to end after a stop. */
 static const double PROCESS_GRACE_S = 5.0;
 
 typedef struct {
@@ -50,7 +50,7 @@ typedef struct {
     double grace_s;
     int may_leave;
     size_t (*write)(void *self, const Worker *w, char *request);
-    /* Of what is no process: sends the request; what comes is written to `in`, and read at `out`. NULL: a process */
+    /* Sends the request if the worker is no process; answers are written to `in`, read at `out`. NULL: a process */
     void (*send)(void *self, const Worker *w);
     void (*look)(void *self, Worker *w); /* takes whole answers from `line`, each by pool_settle */
     /* reason: of an outcome, to be written into the task's part */
@@ -81,6 +81,6 @@ Status pool_wait(Worker *w, Err *err);
 /* So many designs at once from now on, where there is memory. 0: it is no number from 1 to TASKS_MAX. */
 int pool_batch(Worker *w, size_t n);
 
-/* What became of the worker's next task; kill_it: the worker is not to be trusted any more. */
+/* Ends the worker's next task with an outcome; kill_it: the worker cannot be trusted any more. */
 __attribute__((format(printf, 4, 5))) void pool_settle(Worker *w, Outcome outcome, int kill_it, const char *format,
                                                        ...);

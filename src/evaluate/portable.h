@@ -33,6 +33,6 @@ Status portable_make(const Settings *s, unsigned char **bytes, size_t *n, Err *e
 
 Status portable_read(Portable *p, const unsigned char *bytes, size_t n, Err *err);
 
-/* What building_read would have said of this model. STATUS_MISSING: the bytes have none of that name. */
+/* Gives what building_read would have read of this model. STATUS_MISSING: the bytes have no model of that name. */
 Status portable_building(const Portable *p, const char *model, BuildingFiles *out, Err *err);
 void portable_free(Portable *p);

@@ -53,7 +53,7 @@ static inline int goes_on(const Observer *o)
     return !o || !o->go_on || o->go_on(o->user);
 }
 
-/* What is simulated instead of a design as the problem has it; its simulator knows the meaning. {0}: the design. */
+/* A variant to simulate in place of the design; the simulator knows its meaning. {0}: the design as it is. */
 typedef struct {
     int kind, is_brief;
     int is_full; /* more of the result is wanted than combine needs: a larger part */
@@ -123,7 +123,7 @@ struct Problem {
     Observer observer;
 };
 
-/* What evaluations cost, in integers, so that sums are exact. */
+/* Costs of evaluations, in integers, so that sums are exact. */
 typedef struct {
     size_t cheap, rest, whole; /* the cheap level, what is left to the whole evaluation, one asked for at once */
 } LevelCosts;

@@ -38,10 +38,10 @@ static const double REPLICATE_CHANGE = 1e-8;
 /* x becomes replicate k; its first n_gaps numbers are gaps [m], of which none gets negative. */
 void replicate_design(uint32_t seed, size_t k, double tolerance_m, size_t n_gaps, double x[]);
 
-/* The same of a design: both sides of a floor are changed alike where they are one variable, else each by itself. */
+/* Perturbs the gaps of a design. Both sides of a floor change alike where they are one variable, else separately. */
 void replicate_gaps(uint32_t seed, size_t k, double tolerance_m, const DesignSpace *s, Design *d);
 
-/* What replicate k is built like; 0: as designed. */
+/* Says how replicate k is built; 0: as designed. */
 AsBuilt replicate_as_built(uint32_t seed, size_t k, const UncertainOptions *u);
 
 /* "as built", or "predictability": what the deviation of replicates is. */
@@ -64,7 +64,7 @@ typedef struct {
     double seconds;                           /* of all simulations */
 } ReplicateSummary;
 
-/* Of a study whose simulations have these options. */
+/* Plans the replicates of a study whose simulations have these options. */
 ReplicatePlan replicate_plan(const SimOptions *o, size_t n_records);
 
 /* SimResult.rate_per_year [1/year] under a record (motion/suite.h): its own, times the records of which a mean

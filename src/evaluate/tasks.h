@@ -15,8 +15,8 @@ void queue_give(Queue *q, const Task *task, Status status, const Err *why);
 
 /* -- who does them ------------------------------------------------------------------------------------------------- */
 
-/* Of a problem with n_workers of its own: the ranks of the cluster (evaluate/cluster.h) where there are some and it has
- * a recipe, as many workers each; else the same. */
+/* Chooses the executor of a problem with n_workers: the ranks of the cluster (evaluate/cluster.h), with as many workers
+ * each, if there are ranks and the problem has a recipe; else its own workers. */
 void executor_choose(Problem *p);
 
 /* Workers for a setting of so many threads; 0: one for each processor. */

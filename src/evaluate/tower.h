@@ -34,7 +34,7 @@ Status tower_open(Problem *p, const Settings *s, TowerUse use, size_t n_tasks, E
 Status tower_open_scenes(Problem *p, const Settings *s, size_t n_records, const char *const records[], size_t n_scenes,
                          const SceneChange scenes[], Err *err);
 
-/* The same in another process. */
+/* Opens the problem again in another process. */
 Status tower_reopen(Problem *p, const Recipe *recipe, Err *err);
 
 /* The design variables of the settings, whose building is read for it. */
@@ -79,7 +79,7 @@ typedef struct {
     ReplicateSummary *summary; /* NULL: not wanted */
 } SimTask;
 
-/* What the queue is asked for then. */
+/* The variant that the queue is asked for. */
 Variant tower_variant(const Tower *t, const SimTask *task);
 
 /* All n tasks, shared out over the workers. tell: how many are done, NULL: nobody asks. */

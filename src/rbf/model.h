@@ -21,7 +21,7 @@ typedef struct {
     double warp[2]; /* a, b */
 } Shape;
 
-/* What the model keeps of one output. */
+/* The model of one output. */
 typedef struct {
     RbfForm form;
     size_t n;           /* centres with a weight, the first ones: all, or a few that leave no error */
@@ -37,7 +37,7 @@ typedef struct {
     double *leave_one_out; /* (n_max) [unit of f] */
 } Output;
 
-/* What one thread needs to fit one output; matrices column-major as LAPACK likes them, lower triangles. */
+/* Work space of one thread for one output; matrices are column-major for LAPACK, lower triangles. */
 typedef struct {
     double *C, *S, *Z;   /* centres of the tuning set; scaled; for gradients */
     double *by_a, *by_b; /* (n) derivatives by the warp */

@@ -46,8 +46,8 @@ Status rbf_create(Rbf **out, size_t n_max, size_t n_dim, size_t n_out, Err *err)
  * starts with Matern, linear tail, theta = 1 / n_dim, no warp. */
 Status rbf_fit(Rbf *m, size_t n, const double X[], const double F[], const double noise[], Err *err);
 
-/* The same with forms and scales tuned first, starting from the present ones, on at most 250 of the centres, evenly
- * spread. */
+/* Tunes forms and scales first, starting from the present ones, on at most 250 evenly spread centres; then fits as
+ * above. */
 Status rbf_tune(Rbf *m, size_t n, const double X[], const double F[], const double noise[], Err *err);
 
 /* F (n, n_out) at X (n, n_dim), and the errors E (n, n_out), which may be NULL. RBF_BLOCK points cost little more than

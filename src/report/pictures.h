@@ -16,7 +16,7 @@ Status browser_check(const char *path, Err *err);
 /* The page of body (see page_write) as a PDF on A4. */
 Status page_print(json_t *run, const char *body, const char *path, Err *err);
 
-/* What the page draws of `data` by that name (DRAWINGS of web/app/8-paper.js) as an SVG of that width [px]. */
+/* Saves the drawing of that name (DRAWINGS of web/app/8-paper.js) of `data` as an SVG of that width [px]. */
 Status drawing_save(const char *name, json_t *data, int width, const char *path, Err *err);
 
 /* Every picture of the report in a folder, which is made where it is not there. */

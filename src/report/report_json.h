@@ -21,5 +21,5 @@ json_t *result_json(const SimResult *r, const MeasureOrder *order);
 /* explained, total, centres; null: too few designs succeeded. */
 json_t *importance_json(const Importance *m, const Schema *schema);
 
-/* Of the tower: gaps, thickness, peaks and shares beside the baselines, histories, other earthquakes. */
+/* Details of a tower: gaps, thickness, peaks and shares beside the baselines, histories, other earthquakes. */
 json_t *detail_json(const Detail *d, const MeasureOrder *order);

@@ -31,5 +31,5 @@ int verdict_compare(double sense, double value, double error, double other);
 Status verdict_find(const Settings *s, const Evaluations *e, const double x[], const char *run, const char *design,
                     char **out, Err *err);
 
-/* Of a design of a run of the tower; s: its settings, the records where they are now. */
+/* Finds the verdict on a design of a run of the tower; s: its settings, with the records where they are now. */
 Status verdict_of_run(const Run *run, size_t row, const Settings *s, char **out, Err *err);

@@ -5,9 +5,9 @@
 
 #include "evaluate/schema.h"
 
-/* Of objective k, or of measure k - n_obj; one of another problem than the tower has its name and no unit. */
+/* Words for objective k, or for measure k - n_obj; other problems than the tower have names without units. */
 Words words_of_objective(const Schema *schema, size_t k);
 
-/* What an objective is where it stands for several simulations: "worst of 2 records x 4 replicates"; else empty. */
+/* Says what an objective of several simulations is, "worst of 2 records x 4 replicates"; else empty. */
 enum { RULE_WORDS_MAX = 120 };
 void words_of_rule(const Settings *s, char text[RULE_WORDS_MAX]);

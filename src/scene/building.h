@@ -53,7 +53,7 @@ typedef struct {
     double arm_contact, arm_edge; /* [-] of the contacts, of the edges, over the radius of gyration */
 } BuildingModel;
 
-/* Of floor j in mode i, at an arm from its centre. */
+/* Displacement of floor j in mode i, at an arm from its centre. */
 static inline double building_shape(const BuildingModel *m, int j, double arm, int i)
 {
     const double centre = m->phi[j * m->n + i];

@@ -69,8 +69,8 @@ typedef struct {
 Status core_beam_make(CoreBeam *c, const CoreOptions *o, int n, const double storey_m[], double t_base_m,
                       double t_top_m, Err *err);
 
-/* What the foundation's dashpots add to 2 zeta w of a mass-normalised mode of frequency omega: v, entries `stride`
- * apart, are the core's nodes in it. */
+/* Damping 2 zeta w that the foundation's dashpots add to a mass-normalised mode of frequency omega, whose entries at
+ * the core's nodes are v, `stride` apart. */
 double core_beam_base_loss(const CoreBeam *c, double omega, const double v[], int stride);
 
 /* omega C / K at the first mode of the larger of the foundation's dashpots. */

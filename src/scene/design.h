@@ -111,7 +111,7 @@ void design_of(const DesignSpace *space, const double x[], Design *d);
 int design_put_links(const DesignSpace *space, double n_s_m, double x[]);
 int design_put_mass(const DesignSpace *space, double kg, double hz, double damping, double x[]);
 
-/* What stands between tower and core, "impacts and links and a tuned mass". */
+/* Names what is between tower and core, "impacts and links and a tuned mass". */
 enum { PROTECTION_MAX = 40 };
 const char *design_protection(const DesignSpace *space, const Design *d, char text[PROTECTION_MAX]);
 
@@ -138,6 +138,6 @@ Status design_cell(const DesignSpace *space, int j, const Table *t, size_t row, 
 /* A table of designs, further columns among them, with numbers in the place of words. */
 Status design_table_read(Table *t, const char *path, const DesignSpace *space, Err *err);
 
-/* The same as design_read of a table that is read already; its numbers pass over to the designs. */
+/* As design_read, from a table that is read already; the designs take over its numbers. */
 Status design_of_table(Designs *d, Table *t, const char *path, const DesignSpace *space, Err *err);
 void design_free(Designs *d);

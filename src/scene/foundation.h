@@ -44,7 +44,7 @@ double foundation_complete(char text[OPTION_TEXT_MAX], int is_stored);
 /* M_up [N m] under a weight [N]. */
 double foundation_uplift_nm(const Foundation *f, double weight_n);
 
-/* What dashpot C beside spring K takes, per squared velocity of the spring alone under the same force: C / (1 + (w C /
+/* Power of dashpot C beside spring K, per squared velocity of the spring alone under the same force: C / (1 + (w C /
  * K)^2), for K theta' + C theta'' = M'. K 0: C is 0 too. */
 double foundation_loss(double K, double C, double omega);
 

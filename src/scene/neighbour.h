@@ -17,10 +17,10 @@ static const double LEVELS_M = 0.3; /* about the thickness of a slab */
 /* Is there one? */
 int neighbour_is_given(const CoreOptions *o);
 
-/* What thickness and stresses follow: CORE_EFFECTIVE, neither, of a neighbour; else core.section. */
+/* Section that thickness and stresses follow: core.section; of a neighbour CORE_EFFECTIVE, which has neither. */
 CoreSection core_section(const CoreOptions *o);
 
-/* What the core is made as: the theory of its beam, or core.model. */
+/* In words what the core is: the theory of its beam, or core.model. */
 const char *core_word(const CoreOptions *o);
 
 /* The core beside or inside building b, of whose options the neighbour is read; thicknesses are those of a beam. */

@@ -8,7 +8,7 @@
 enum { FLOORS_MAX = 128 }; /* of a building */
 enum { SIDES = 2 };        /* of a floor: [0] right, which it reaches by u > v, [1] left, by u < v */
 
-/* What the entries of K.csv and M.csv are in, kip_in: kip/in and kip s2/in; or an OpenSees model. */
+/* Units of K.csv and M.csv (kip_in: kip/in and kip s2/in), or of an OpenSees model. */
 #define BUILDING_UNITS_LIST(X)                                                                                         \
     X(BUILDING_AUTO, "auto")                                                                                           \
     X(BUILDING_N_M_KG, "N_m_kg")                                                                                       \
@@ -80,7 +80,7 @@ typedef struct {
     X(GAPS_EACH, "each")
 typedef enum { GAP_SIDES_LIST(CHOICE_NAME) } GapSides;
 
-/* Of a stop, the bumper in it, a link, tonnes, and a MN of anchors; any currency. */
+/* Prices of a stop, the bumper in it, a link, tonnes, and a MN of anchors; any currency. */
 typedef struct {
     double gap, bumper, link, tuned_mass_t, core_t, anchor_mn;
 } PriceOptions;

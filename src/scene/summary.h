@@ -43,7 +43,7 @@ static const double DAMPING_MAX = 0.2, PEAK_MAX_G = 3, GAP_MAX_M = 1;
 
 typedef void (*WarnFn)(const char *key, const char *text, void *user);
 
-/* What the building alone has of them. */
+/* Warnings about the building alone. */
 void building_warnings(const Building *b, WarnFn warn, void *user);
 
 /* Which of the first periods of a frame whose floors stretch (building.rigid_floors = off) its full model has

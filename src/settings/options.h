@@ -67,7 +67,7 @@ typedef struct Settings {
     unsigned char given[32]; /* a bit for each line of the table: something has said it (settings_gives) */
 } Settings;
 
-/* What a scene needs of them. */
+/* The settings that a scene needs. */
 static inline SceneOptions settings_scene(const Settings *s)
 {
     return (SceneOptions){s->building, s->core, s->contact, s->sim, s->design};

@@ -7,6 +7,6 @@
 #define SURROGATE_USE_LIST(X) X(SURROGATE_ON, "on") X(SURROGATE_OFF, "off")
 typedef enum { SURROGATE_USE_LIST(CHOICE_NAME) } SurrogateUse;
 
-/* What of most designs is evaluated alone (moga/screening.c): the first replicate of every record. */
+/* The part of most designs that is evaluated (moga/screening.c): the first replicate, or some of the records. */
 #define FIDELITY_LIST(X) X(FIDELITY_OFF, "off") X(FIDELITY_REPLICATES, "replicates") X(FIDELITY_RECORDS, "records")
 typedef enum { FIDELITY_LIST(CHOICE_NAME) } Fidelity;

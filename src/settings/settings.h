@@ -27,13 +27,13 @@ Status settings_read(Settings *s, const char *path, FILE *faults, int *n_faults,
 typedef int (*SettingGivenFn)(const void *user, const char *key);
 void settings_place(const char *path, SettingGivenFn is_given, const void *user, Err *err);
 
-/* The same from text in memory, of a run that was saved. `path` names it in messages and is
+/* Reads the settings of a saved run from text in memory. `path` names it in messages and is
  * where relative paths begin. */
 Status settings_parse(Settings *s, const char *path, const char *text, Err *err);
 
-/* Of a run that is resumed: a limit may be changed on request, a free one changes no result (the files that paths name
- * are told apart by their content). An output is a path that is written: it stays as it is. A
- * basic one is touched by a first study. */
+/* When a run is resumed, a limit may be changed on request; a free setting changes no result (files are told apart by
+ * their content). An output is a path that is written: it stays as it is. A first study
+ * touches the basic ones. */
 typedef enum { SETTING_LIMIT = 1, SETTING_FREE = 2, SETTING_OUTPUT = 4, SETTING_BASIC = 8 } SettingFlags;
 
 /* Calls `differs` for every setting that is not the same in both, in the order of the table, values as text. */
@@ -45,7 +45,7 @@ void settings_compare(const Settings *was, const Settings *is, SettingsDiffFn di
 typedef void (*SettingFn)(const char *key, const char *value, void *user);
 void settings_each(const Settings *s, const char *word, SettingFn take, void *user);
 
-/* The same for every file or folder that a setting reads, one by one. */
+/* Calls take for every file or folder that a setting reads, one by one. */
 void settings_each_path(const Settings *s, SettingFn take, void *user);
 
 Status settings_put(Settings *s, const char *key, const char *value, Err *err);
@@ -59,7 +59,7 @@ Status settings_set(Settings *s, const char *assignment, Err *err);
 /* Every setting that names a file that is there: as its absolute path, so that it can be looked up from anywhere. */
 void settings_make_absolute(Settings *s);
 
-/* The same as paths from a folder (as realpath names it), but for absolute ones: what a file there is to say. */
+/* Makes paths relative to a folder (as realpath names it), except absolute ones, for a file in that folder. */
 void settings_make_relative(Settings *s, char *folder);
 
 /* search.fidelity is not off, and there is what it can screen: replicates that are none of noisy evaluations, or

@@ -16,7 +16,7 @@
 #include "scene/design.h"
 #include "sim/options.h"
 
-/* What there is of a scene; a set of bits. */
+/* Parts that a scene has; a set of bits. */
 enum { HAS_CORE = 1, HAS_GAPS = 2, HAS_DEVICE = 4, IS_JOINED = 8 };
 
 /* id, key in files, words for people, what there is. The first is the design, the others are its baselines. */
@@ -46,7 +46,7 @@ static inline int case_has_device(SceneKind kind)
     return (SCENES[kind].has & HAS_DEVICE) != 0;
 }
 
-/* Of a design with a core of core_kg, which has n floors: nothing to meet but the device. */
+/* Makes the design of a case: n floors, a core of core_kg, and the device as the only contact. */
 void case_design(SceneKind kind, const LinearDevice *device, double core_kg, int n, Design *design);
 
 /* Number i of the device, by its name in files; NULL: it has no more. */

@@ -48,7 +48,7 @@ typedef struct {
 typedef Status EngineFn(const SimModel *model, const Motion *motion, const EngineOptions *options, SimResult *result,
                         Err *err);
 
-/* What an engine controls its error by. */
+/* The number by which an engine controls its error. */
 typedef enum {
     TOLERANCE_STEP,             /* [s] fixed step */
     TOLERANCE_RELATIVE,         /* [-] relative local error */

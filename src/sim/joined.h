@@ -28,5 +28,5 @@ typedef struct {
 Status joined_make(Joined *j, const Building *b, const CoreBeam *core, Err *err);
 void joined_free(Joined *j); /* a zeroed one is fine */
 
-/* Of a run of its building, whose shares are those of the first modes of both. */
+/* Books the energy shares of a run of the joined building under the first modes of both. */
 void joined_book(const Joined *j, SimResult *r);

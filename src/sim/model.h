@@ -88,10 +88,10 @@ void model_add_device(SimModel *model, const Device *device, int on_mass);
 /* The mat of a core that may lift, else nothing; the core of the model, or joined to its building (sim/joined.h). */
 void model_add_uplift(SimModel *model, const CoreBeam *core);
 
-/* What the devices reached, peak (n_devices). */
+/* Reports the peaks of the devices, peak (n_devices). */
 void model_report_devices(const SimModel *model, const DevicePeak peak[], SimResult *result);
 
-/* Of floor j on side s = 1, -1 where u_j - v_j is w [m]. */
+/* Penetration of floor j on side s = 1, -1 where u_j - v_j is w [m]. */
 static inline double penetration(const SimModel *model, int j, int s, double w)
 {
     return s * (w - model->middle[j]) - model->gap[j];

@@ -50,7 +50,7 @@ typedef struct {
     double restitution, contact_stiffness, core_stiffness, building_stiffness, damping, ground_stiffness, strength;
 } UncertainOptions;
 
-/* What a part of every storey costs, destroyed, as a share of the building (evaluate/consequences.h). */
+/* Cost of the destroyed parts of every storey, as shares of the building (evaluate/consequences.h). */
 typedef struct {
     double structure, drift_sensitive, acceleration_sensitive;
 } RepairOptions;
@@ -87,7 +87,7 @@ typedef struct {
     double link_ns_m;           /* SCENE_LINKS: [N s/m] of every dashpot between a floor and the core */
 } LinearDevice;
 
-/* What a scene is made of; without the ground motion. */
+/* The parts of a scene, without the ground motion. */
 typedef struct {
     BuildingOptions building;
     CoreOptions core;

@@ -60,7 +60,7 @@ typedef struct {
 
 enum { CHANCES_MAX = 4 };
 
-/* Of a link or the tuned mass: largest distance across it [m], largest force [N]. */
+/* Peaks of a link or the tuned mass: largest distance across it [m], largest force [N]. */
 typedef struct {
     double stroke, force;
 } DevicePeak;
@@ -128,7 +128,7 @@ typedef struct {
     FloorPeaks neighbour;
 } SimResult;
 
-/* What there is of a result beside its measures (evaluate/measures.h), by name: of the scene, of every floor or
+/* Parts of a result beside its measures (evaluate/measures.h), by name: of the scene, of every floor or
  * storey, of every mode, or of every floor on both sides of the core, u > v first. A storey counts from 1. */
 typedef enum {
     PART_NUMBER,

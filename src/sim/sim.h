@@ -22,7 +22,7 @@
 typedef struct Scene Scene;
 typedef struct SimWorker SimWorker;
 
-/* Of the input: the largest energy-balance error of a run that counts. */
+/* Largest energy-balance error of a valid run, as a share of the input. */
 double sim_energy_balance_max(const SimOptions *o);
 
 /* Steps per contact that a tolerance needs, a relative error: 2 (0.01 / tolerance)^(2/3), so that J3 and the shares,
@@ -75,7 +75,7 @@ void sim_worker_contacts(SimWorker *worker, SimContactFn contact, void *user);
 /* Every run from now on is of a structure that was built so; NULL: as the options say. */
 Status sim_worker_as_built(SimWorker *worker, const AsBuilt *built, Err *err);
 
-/* Of SCENE_TMD and SCENE_LINKS in every run from now on. */
+/* Sets the device of SCENE_TMD and SCENE_LINKS in every run from now on. */
 void sim_worker_device(SimWorker *worker, const LinearDevice *device);
 
 /* Ends the simulations of this integrator at `seconds` where the scene's last longer; INFINITY: where they do. */
@@ -84,5 +84,5 @@ void sim_worker_until(SimWorker *worker, double seconds);
 /* x as above; ignored for SCENE_NO_CORE. */
 Status sim_run(SimWorker *worker, SceneKind kind, const double x[], SimResult *result, Err *err);
 
-/* The same of a design as it is built. */
+/* Simulates a design as it is built. */
 Status sim_run_built(SimWorker *worker, SceneKind kind, const Design *design, SimResult *result, Err *err);

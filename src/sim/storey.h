@@ -18,7 +18,7 @@
 
 #include "scene/options.h"
 
-/* What all storeys of a building have in common. */
+/* The law that all storeys of a building have in common. */
 typedef struct {
     Hysteresis kind;
     double exponent, strength, stiffness; /* [-] n, s_s, s_k of bouc_wen */

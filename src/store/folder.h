@@ -50,10 +50,10 @@ int folder_keeps(const char *path);
 /* Who names the database means the run: of RUN/run.sqlite the folder is left. Returns whether it was one. */
 int run_drop_name(char *path);
 
-/* Behind the message of a run.sqlite that is damaged or empty: what to do. Returns status. */
+/* Appends advice to the message about a damaged or empty run.sqlite. Returns status. */
 Status folder_advise(const char *path, Status status, Err *err);
 
-/* Behind what its log.jsonl holds. */
+/* Appends to log.jsonl. */
 Status folder_log(const char *folder, const char *text, Err *err);
 
 /* 2026-01-31T23:59:59Z, now */

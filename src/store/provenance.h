@@ -21,7 +21,7 @@ json_t *program_description(void);
 /* As JSON, to be freed by the caller. model: how it was chosen, which is taken; NULL: it was given. */
 Status provenance_text(char **out, const Settings *s, const Adapter *adapter, json_t *model, Err *err);
 
-/* What a run depends on beside its settings: hashes of the first record, of all records together, of the forces, and of
+/* Inputs of a run beside its settings: hashes of the first record, of all records together, of the forces, and of
  * the matrices; 0 where there are none. */
 typedef struct {
     uint64_t record, records, forces, matrices;

@@ -26,7 +26,7 @@ typedef struct Settings Settings;
 
 enum { NEVER = -1 };
 
-/* Of an evaluation. */
+/* Place of an evaluation on the front. */
 typedef struct {
     int entered, left; /* NEVER */
     int ok, on_front;
@@ -110,14 +110,14 @@ Status run_settle_front(Run *run, Err *err);
 /* The front of the designs whose place is marked as on it: ok, feasible, and dominated by no other of them. */
 Status run_form_front(Run *run, Err *err);
 
-/* Of search.max_evals, those of the rows from `first` on: a screened design is its share of an evaluation (one of
- * sim.replicates, or records of race_first), finished it is the rest. Of a generation that is not finished no more than
- * it will be: rows without spreads are taken as screened. */
+/* Evaluations, as search.max_evals counts them, of the rows from `first` on. A screened design counts its share of an
+ * evaluation (one of sim.replicates, or records of race_first), a finished one the rest. In a generation that is not
+ * finished, rows without spreads count as screened. */
 size_t run_evaluations(const Run *run, size_t first);
 
 size_t run_first_polished(const Run *run); /* its row: behind those of the search; none: run->table.n */
 
-/* What the reason of a design begins with that `imtet simplify` made; the id of the one that it was made of follows. */
+/* Beginning of the reason of a design that `imtet simplify` made; the id of its origin follows. */
 static const char SIMPLIFIED_FROM[] = "simplified from ";
 /* Rows: a design as the search found it, and the last that was made of it, one of which is `row`; 0: there are none. */
 int run_simplified(const Run *run, size_t row, size_t pair[2]);

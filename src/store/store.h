@@ -42,7 +42,7 @@ const char *store_folder(const RunStore *store);
 /* The run that the folder held when it was opened, without its rows (RUN_HEAD); NULL: none. */
 const Run *store_run(const RunStore *store);
 
-/* What a session goes on from: the evaluations of the generation that was cut short, whose id is their number in the
+/* Evaluations of the generation that was cut short, from which a session continues; their ids are their numbers in the
  * search. */
 const EvaluationTable *store_unfinished(const RunStore *store);
 

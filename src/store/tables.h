@@ -38,7 +38,7 @@ Status tables_set_settings(Database *db, const Settings *used, const Run *run, E
  * lacks: a bit in the text of a table may have changed what a query does. */
 Status tables_check(Database *db, const Schema *schema, Err *err);
 
-/* Of "SELECT settings, provenance, planned_evals, n_var, ?, ?, digest FROM run": they are what was written. */
+/* Whether the row of "SELECT settings, provenance, planned_evals, n_var, ?, ?, digest FROM run" is as written. */
 int tables_head_is_whole(sqlite3_stmt *row);
 
 /* Tables of evaluations, whose finer rows have err, of n_obj + n_extra numbers, behind extra; tables of records. */
@@ -89,6 +89,6 @@ Status rows_each(Database *db, RunTable table, const Schema *schema, const char 
 
 /* -- digests ------------------------------------------------------------------------------------------------------- */
 
-/* Of a member of a set, joined in any order by exclusive or. */
+/* Digest of a member of a set; digests are joined in any order by exclusive or. */
 uint64_t digest_member(long id);
 long state_digest(long generation, const void *bytes, size_t n);

@@ -12,7 +12,7 @@
 
 #include "sim/engine.h"
 
-/* Of building and core, for these engines. Rows of 65 cache lines: at 512 doubles, a page, rows fall on the same
+/* Most modes of building and core here. Rows have 65 cache lines: at 512 doubles, a page, rows fall on the same
  * lines of the cache and etdrk4 takes 1.7 times as long. */
 enum { MODES_MAX = 520 };
 

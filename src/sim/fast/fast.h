@@ -42,6 +42,6 @@ const char *fast_kernel_name(void);
 
 FastTolerances fast_tolerances(Accuracy accuracy);
 
-/* Of the options: duration, onsets and sample. */
+/* Runs the engine; of the options it reads duration, onsets and sample. */
 void fast_run(FastWork *work, const SimModel *model, const Motion *motion, const EngineOptions *options,
               const FastTolerances *tolerances, SimResult *result);

@@ -86,7 +86,7 @@ typedef struct {
     int may_rise[3];                  /* [u, drift, acceleration] may this step raise a peak? */
 } ContactScratch;
 
-/* Of the three monotone pieces of a storey's path each may have one edge and one end. */
+/* Each of the three monotone pieces of a storey's path may have one edge and one end. */
 enum { PIECES = 3, KINKS_MAX = 2 * PIECES };
 
 /* Storeys that yield (n_pad), in a step where some may. */

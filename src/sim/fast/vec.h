@@ -156,7 +156,7 @@ static inline m22 m22_times(m22 a, m22 b)
            __builtin_shufflevector(a, a, 1, 1, 3, 3) * __builtin_shufflevector(b, b, 2, 3, 2, 3);
 }
 
-/* The same with b in two parts, its upper row twice and its lower row twice. */
+/* A 2 x 2 factor b in two parts, its upper row twice and its lower row twice. */
 typedef struct {
     v4 upper, lower;
 } m22_rows;
