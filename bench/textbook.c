@@ -80,7 +80,7 @@ typedef struct {
     double noise;
     uint32_t seed;
     VariableKind kind[TEXTBOOK_VAR_MAX];
-    double lower[TEXTBOOK_VAR_MAX], upper[TEXTBOOK_VAR_MAX];
+    double lower[2 * TEXTBOOK_VAR_MAX], *upper; /* behind them */
 } Exercise;
 
 /* Where in the width of its variable a number of another kind stands. */
@@ -133,12 +133,18 @@ static const Simulator TEXTBOOK = {.simulate = simulate, .combine = combine, .cl
 
 static Status set_variables(Exercise *e, const char *kinds, Err *err)
 {
+    Steps *lists;
+    e->upper = e->lower + e->n_var;
     for (size_t j = 0; j < e->n_var; j++) {
         e->lower[j] = 1.0;
         e->upper[j] = 10.0;
     }
-    TRY(kinds_read(kinds, e->n_var, e->kind, e->lower, e->upper, err));
+    const Status status = kinds_read(kinds, e->n_var, e->kind, e->lower, &lists, err);
+    free(lists);
+    TRY(status);
     for (size_t j = 0; j < e->n_var; j++) {
+        if (e->kind[j] == VARIABLE_STEPPED)
+            return bad_data(err, "a textbook problem has no lists of numbers");
         if (e->kind[j] != VARIABLE_CHOICE)
             e->lower[j] = e->kind[j] == VARIABLE_LOG ? 1e-3 : 0.0;
         if (e->kind[j] <= VARIABLE_LOG)
@@ -162,7 +168,7 @@ Status textbook_open(Problem *p, const TextbookOptions *o, Err *err)
                         TEXTBOOK_OBJ_MAX, TEXTBOOK_VAR_MAX);
     Exercise *e;
     TRY_ROOM(e, 1, "a problem", err);
-    *e = (Exercise){&PROBLEMS[i], o->n_var, o->n_obj, o->noise, o->seed, {0}, {0}, {0}};
+    *e = (Exercise){&PROBLEMS[i], o->n_var, o->n_obj, o->noise, o->seed, {0}, {0}, NULL};
     const Status status = set_variables(e, o->kinds, err);
     if (status != STATUS_OK) {
         free(e);

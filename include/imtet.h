@@ -83,7 +83,7 @@ typedef struct {
     size_t variables, objectives; /* 1 at least */
     size_t constraints;           /* G <= 0; 100 at most */
     const double *lower, *upper;  /* (variables) finite; NULL: 0 and 1 */
-    const char *kinds;            /* real, log, int or choice:WORD|WORD, one for all variables or a comma
+    const char *kinds;            /* real, log, int, list:4|5|8 or choice:WORD|WORD, one for all or a comma
                                                 list; NULL: real */
     const char *senses;           /* min or max, one for all objectives or a comma list; NULL: min */
     size_t starts;                /* number of initial designs, */

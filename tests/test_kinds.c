@@ -290,7 +290,7 @@ TEST(kinds_that_make_no_sense_are_refused_by_their_key)
         const char *kinds, *lower, *upper, *message;
     } BAD[] = {
         {"real, int", "0", "1", "problem.kinds: 2 kinds for 3 variables"},
-        {"whole", "0", "1", "problem.kinds: 'whole' is none of real, log, int, choice:WORD|WORD"},
+        {"whole", "0", "1", "problem.kinds: 'whole' is none of real, log, int, list:NUMBER|NUMBER, choice:WORD|WORD"},
         {"log", "0", "1", "problem.lower: is 0 for variable 1, which is log: set it above 0"},
         {"int", "0", "1.5", "0 and 1.5 of variable 1, which is int, are no whole numbers"},
         {"choice:", "0", "1", "problem.kinds: choice:: word 1 is empty"},
@@ -300,17 +300,23 @@ TEST(kinds_that_make_no_sense_are_refused_by_their_key)
         {"choice:a|\xff", "0", "1", "word 2 is empty"},
         {"choice: a|b", "0", "1", "word 1 is empty"},
         {"choice:a|=1+1", "0", "1", "word 2 is empty"},
+        {"list:4||8", "0", "1", "problem.kinds: list:4||8: item 2 is no number"},
+        {"list:4|5.5|inf", "0", "1", "item 3 is no number"},
+        {"list:4|5m", "0", "1", "item 2 is no number"},
+        {"list:4|8|5", "0", "1", "problem.kinds: list:4|8|5: 5 stands behind 8; give them in ascending order"},
     };
     for (size_t i = 0; i < sizeof BAD / sizeof *BAD; i++) {
         VariableKind kind[3];
-        double lower[3], upper[3];
+        double bounds[6];
+        Steps *steps;
         err = (Err){0};
         for (int j = 0; j < 3; j++) {
-            lower[j] = atof(BAD[i].lower);
-            upper[j] = atof(BAD[i].upper);
+            bounds[j] = atof(BAD[i].lower);
+            bounds[3 + j] = atof(BAD[i].upper);
         }
-        assert_int_equal(kinds_read(BAD[i].kinds, 3, kind, lower, upper, &err), STATUS_BAD_DATA);
+        assert_int_equal(kinds_read(BAD[i].kinds, 3, kind, bounds, &steps, &err), STATUS_BAD_DATA);
         assert_non_null(strstr(err.text, BAD[i].message));
+        free(steps);
     }
 }
 

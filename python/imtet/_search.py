@@ -80,7 +80,8 @@ class Search(library.Handle, Tabular):
     objectives : int
         Number of values that the function returns.
     kinds : str or list of str, optional
-        "real", "log", "int" or "choice:steel|oak", one for all variables or one of each. A choice is 0, 1, ... in X.
+        "real", "log", "int", "list:4|5|8" (numbers in ascending order) or "choice:steel|oak", one for all variables or one
+        of each. A choice is 0, 1, ... in X.
     seed : int or None
         None draws one and keeps it in `seed`. The same arguments, answers and seed give the same designs to the last
         bit; portions of asking, the order of telling, saving and loading change nothing.

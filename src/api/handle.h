@@ -32,6 +32,7 @@ struct imtet_search {
     double *lower, *upper, *given;
     size_t n_given;
     VariableKind *kind;
+    Steps *steps;
     double aspire[OBJECTIVES_MAX];
     Search *search;
     EvaluationTable table; /* extra: the constraint values */

@@ -117,10 +117,11 @@ Status handle_open(imtet_search *s, Err *err)
         if (!isfinite(s->lower[j]) || !isfinite(s->upper[j]) || s->lower[j] > s->upper[j])
             return bad_data(err, "variable %zu has the bounds %g and %g; give finite ones, the lower one first", j + 1,
                             s->lower[j], s->upper[j]);
-    TRY(kinds_read(s->settings.problem.kinds, p->n_var, s->kind, s->lower, s->upper, err));
+    TRY(kinds_read(s->settings.problem.kinds, p->n_var, s->kind, s->lower, &s->steps, err));
     TRY(aspirations_read(&p->aspire, s->aspire, &s->schema, s->settings.search.aspire, err));
     p->lower = s->lower;
     p->upper = s->upper;
+    p->steps = s->steps;
     p->kind = kinds_are_real(s->settings.problem.kinds) ? NULL : s->kind;
     p->judge = judge;
     p->user = s;
@@ -147,6 +148,7 @@ void handle_free(imtet_search *s)
     free(s->state);
     free(s->lower);
     free(s->kind);
+    free(s->steps);
     free(s);
 }
 
@@ -207,9 +209,10 @@ static Status create(const imtet_search_options *o, imtet_search **out, Err *err
     }
     TRY(api_check_finite("start", o->starts * n, o->start, "give designs to begin with", err));
     for (size_t i = 0; i < o->starts * n; i++) {
-        if (kinds_are_whole(settings.problem.kinds, i % n) && o->start[i] != floor(o->start[i]))
-            return misused(err, "start: variable %zu of design %zu is %g; it is a whole number (kinds)", i % n + 1,
-                           i / n + 1, o->start[i]);
+        if (!kinds_have(settings.problem.kinds, i % n, o->start[i]))
+            return misused(err,
+                           "start: variable %zu of design %zu is %g; it is a whole number, or one of its list (kinds)",
+                           i % n + 1, i / n + 1, o->start[i]);
         s->given[i] = o->start[i];
     }
     return handle_open(s, err);

@@ -21,6 +21,7 @@ typedef struct {
     long n_con;            /* below 0: any number */
     double *lower, *upper; /* (n_var) */
     VariableKind *kind;    /* (n_var) NULL: all are real */
+    Steps *steps;          /* (n_var) NULL: none is one of a list */
     char kinds[OPTION_TEXT_MAX];
     Pool pool;
 } External;
@@ -195,6 +196,7 @@ static void external_close(void *self)
     pool_close(&e->pool);
     free(e->lower);
     free(e->kind);
+    free(e->steps);
     free(e->text);
     free(e);
 }
@@ -256,7 +258,7 @@ static Status create(External *e, const ProblemOptions *o, size_t n_workers, Err
     if (!kinds_are_real(o->kinds)) {
         snprintf(e->kinds, sizeof e->kinds, "%s", o->kinds);
         TRY_ROOM(e->kind, e->n_var, "variables", err);
-        TRY(kinds_read(e->kinds, e->n_var, e->kind, e->lower, e->upper, err));
+        TRY(kinds_read(e->kinds, e->n_var, e->kind, e->lower, &e->steps, err));
     }
     for (size_t j = 0; j < e->n_var; j++)
         if (e->lower[j] > e->upper[j])
@@ -293,6 +295,7 @@ Status external_open(Problem *p, const ProblemOptions *o, size_t n_workers, Err 
                    .lower = e->lower,
                    .upper = e->upper,
                    .kind = e->kind,
+                   .steps = e->steps,
                    .simulator = &EXTERNAL,
                    .self = e,
                    .n_parts = 1,

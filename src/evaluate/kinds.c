@@ -4,7 +4,7 @@
 
 #include "base/list.h"
 
-static const char CHOICE[] = "choice:";
+static const char CHOICE[] = "choice:", SOLD[] = "list:";
 
 /* The item of variable j. */
 static int item_of(const char *list, size_t j, char item[LIST_MAX])
@@ -21,10 +21,10 @@ int kinds_are_real(const char *list)
     return 1;
 }
 
-/* Word i of "choice:a|b|c"; 0: there is none, or it is too long. */
-static int word_at(const char *item, size_t i, char word[KIND_WORD_MAX])
+/* Word i of "choice:a|b|c" or "list:1|2|3", whichever `kind` is; 0: there is none, or it is too long. */
+static int word_at(const char *item, const char *kind, size_t i, char word[KIND_WORD_MAX])
 {
-    const char *at = strncmp(item, CHOICE, sizeof CHOICE - 1) == 0 ? item + sizeof CHOICE - 1 : NULL;
+    const char *at = strncmp(item, kind, strlen(kind)) == 0 ? item + strlen(kind) : NULL;
     for (; at && i > 0; i--)
         at = strchr(at, '|') ? strchr(at, '|') + 1 : NULL;
     const size_t n = at ? strcspn(at, "|") : 0;
@@ -38,13 +38,13 @@ static int word_at(const char *item, size_t i, char word[KIND_WORD_MAX])
 int kinds_word(const char *list, size_t j, double number, char word[KIND_WORD_MAX])
 {
     char item[LIST_MAX];
-    return number >= 0.0 && number < LIST_MAX && item_of(list, j, item) && word_at(item, (size_t)number, word);
+    return number >= 0.0 && number < LIST_MAX && item_of(list, j, item) && word_at(item, CHOICE, (size_t)number, word);
 }
 
 int kinds_number(const char *list, size_t j, const char *word, double *number)
 {
     char item[LIST_MAX], other[KIND_WORD_MAX];
-    for (size_t i = 0; item_of(list, j, item) && word_at(item, i, other); i++)
+    for (size_t i = 0; item_of(list, j, item) && word_at(item, CHOICE, i, other); i++)
         if (strcmp(word, other) == 0) {
             *number = (double)i;
             return 1;
@@ -52,10 +52,14 @@ int kinds_number(const char *list, size_t j, const char *word, double *number)
     return 0;
 }
 
-int kinds_are_whole(const char *list, size_t j)
+int kinds_have(const char *list, size_t j, double x)
 {
-    char item[LIST_MAX];
-    return item_of(list, j, item) && strcmp(item, "int") == 0;
+    char item[LIST_MAX] = "", word[KIND_WORD_MAX];
+    item_of(list, j, item);
+    for (size_t i = 0; word_at(item, SOLD, i, word); i++)
+        if (strtod(word, NULL) == x)
+            return 1;
+    return strncmp(item, SOLD, strlen(SOLD)) != 0 && (strcmp(item, "int") != 0 || x == floor(x));
 }
 
 /* UTF-8 that fits JSON, a cell of a CSV file and people: no quote, control character, blank at an end, or formula. */
@@ -79,7 +83,7 @@ static Status read_choice(const char *item, double *upper, Err *err)
     size_t n = 0, bars = 0;
     for (const char *c = item; *c; c++)
         bars += *c == '|';
-    for (; word_at(item, n, word) && is_plain(word); n++)
+    for (; word_at(item, CHOICE, n, word) && is_plain(word); n++)
         if (kinds_number(item, 0, word, &first) && first < n)
             return bad_data(err, "problem.kinds: %s names %s twice", item, word);
     if (n != bars + 1)
@@ -91,11 +95,29 @@ static Status read_choice(const char *item, double *upper, Err *err)
     return STATUS_OK;
 }
 
-Status kinds_read(const char *list, size_t n_var, VariableKind kind[], double lower[], double upper[], Err *err)
+/* Numbers of a list, into at. */
+static Status read_sold(const char *item, Steps *s, double at[], Err *err)
+{
+    char word[KIND_WORD_MAX], *end = word;
+    *s = (Steps){.at = at};
+    for (const char *c = item; c; c = strchr(c + 1, '|'), s->n++) {
+        at[s->n] = word_at(item, SOLD, s->n, word) ? strtod(word, &end) : NAN;
+        if (!isfinite(at[s->n]) || *end)
+            return bad_data(err, "problem.kinds: %s: item %zu is no number", item, s->n + 1);
+        if (s->n > 0 && at[s->n] <= at[s->n - 1])
+            return bad_data(err, "problem.kinds: %s: %g stands behind %g; give them in ascending order", item, at[s->n],
+                            at[s->n - 1]);
+    }
+    return STATUS_OK;
+}
+
+Status kinds_read(const char *list, size_t n_var, VariableKind kind[], double bounds[], Steps **steps, Err *err)
 {
     static const char *const WORDS[] = {[VARIABLE_REAL] = "real", [VARIABLE_LOG] = "log", [VARIABLE_WHOLE] = "int"};
     const size_t n = list_count(list);
+    double *lower = bounds, *upper = bounds + n_var, *sold;
     char item[LIST_MAX];
+    *steps = NULL;
     if (n != 1 && n != n_var)
         return bad_data(err, "problem.kinds: %zu kinds for %zu variables", n, n_var);
     for (size_t j = 0, k = 0; j < n_var; j++, k = 0) {
@@ -107,11 +129,22 @@ Status kinds_read(const char *list, size_t n_var, VariableKind kind[], double lo
             TRY(read_choice(item, &upper[j], err));
             continue;
         }
+        if (strncmp(item, SOLD, strlen(SOLD)) == 0) {
+            if (!*steps)
+                TRY_ROOM(*steps, n_var * (1 + LIST_MAX / 2 * sizeof *sold / sizeof **steps), "lists of numbers", err);
+            sold = (double *)(void *)(*steps + n_var) + j * (LIST_MAX / 2);
+            kind[j] = VARIABLE_STEPPED;
+            TRY(read_sold(item, *steps + j, sold, err));
+            lower[j] = sold[0];
+            upper[j] = sold[(*steps)[j].n - 1];
+            continue;
+        }
         while (k < N_OF(WORDS) && strcmp(item, WORDS[k]) != 0)
             k++;
         kind[j] = (VariableKind)k;
         if (k == N_OF(WORDS))
-            return bad_data(err, "problem.kinds: '%s' is none of real, log, int, choice:WORD|WORD", item);
+            return bad_data(err, "problem.kinds: '%s' is none of real, log, int, list:NUMBER|NUMBER, choice:WORD|WORD",
+                            item);
         if (kind[j] == VARIABLE_LOG && !(lower[j] > 0.0))
             return bad_data(err, "problem.lower: is %g for variable %zu, which is log: set it above 0", lower[j],
                             j + 1);

@@ -3,6 +3,7 @@
  *   real                           any number between the bounds
  *   log                            the same, above 0, searched on the scale of its logarithm
  *   int                            a whole number between the bounds
+ *   list:4|5|8|10                  one of these numbers, which are in order; its bounds are not read
  *   choice:steel|timber|concrete   one of these words: 0, 1, 2 in the archive, the word wherever people or workers
  *                                  read; its bounds are not read
  *
@@ -15,10 +16,11 @@ enum { KIND_WORD_MAX = 64 }; /* bytes of a word */
 
 int kinds_are_real(const char *list); /* every variable is; also where the list is empty */
 
-int kinds_are_whole(const char *list, size_t j); /* variable j is an int */
+int kinds_have(const char *list, size_t j, double x); /* variable j may be x: whole, or in its list */
 
-/* kind (n_var), and checks its bounds; a choice gets its own. */
-Status kinds_read(const char *list, size_t n_var, VariableKind kind[], double lower[], double upper[], Err *err);
+/* kind (n_var), and checks its bounds (2, n_var), the lower ones first; a choice and a list get their own. steps: the
+ * numbers of lists, one block to be freed, after a failure too; NULL: there is no list. */
+Status kinds_read(const char *list, size_t n_var, VariableKind kind[], double bounds[], Steps **steps, Err *err);
 
 /* The word that a choice has for its number, and back; 0: variable j is no choice or has none such. */
 int kinds_word(const char *list, size_t j, double number, char word[KIND_WORD_MAX]);

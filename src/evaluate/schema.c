@@ -139,8 +139,8 @@ Status schema_cell(const Schema *schema, size_t j, const Table *t, size_t row, d
     }
     if (status != STATUS_OK)
         *err = why;
-    else if (schema->kinds[0] && kinds_are_whole(schema->kinds, j) && *x != floor(*x))
-        return bad_data(err, "%s is %g; it is a whole number (problem.kinds)", where, *x);
+    else if (schema->kinds[0] && !kinds_have(schema->kinds, j, *x))
+        return bad_data(err, "%s is %g; it is a whole number, or one of its list (problem.kinds)", where, *x);
     return status;
 }
 
