@@ -3,6 +3,9 @@
 #include "moga/replication.h"
 #include "moga/variation.h"
 
+/* Designs of a space that is gone through one by one where chance finds none that is new. */
+static const double COUNTED_MAX = 1e6;
+
 /* What the given designs leave of the initial sample, half of it at least. The sample is enough for a first surrogate
  * of this many variables, and no more than half of the designs that the search was planned for: where they are
  * screened, more than evaluations. */
@@ -75,13 +78,42 @@ static void add_samples(Search *s, size_t n)
     }
 }
 
-/* No parents (every evaluation failed so far) or no new design: where nothing is under way, another Latin hypercube. */
+/* How many values a variable has; INFINITY: any number. */
+static double values_of(const Problem *p, size_t d)
+{
+    if (problem_kind(p, d) == VARIABLE_STEPPED)
+        return (double)p->steps[d].n;
+    return p->upper[d] > p->lower[d] && !problem_is_discrete(p, d) ? INFINITY : p->upper[d] - p->lower[d] + 1.0;
+}
+
+/* All designs that are not known yet, where the space is so small; VAIN_MAX stands for none, unless some are added. */
+static void add_rest(Search *s)
+{
+    const Problem *p = s->common.problem;
+    double *x = s->scratch.given, n = 1.0;
+    for (size_t d = 0; d < p->n_var; d++)
+        n *= values_of(p, d);
+    for (size_t i = 0; n <= COUNTED_MAX && i < (size_t)n && s->batch.n < s->batch.size_max; i++) {
+        for (size_t d = 0, rest = i; d < p->n_var; d++) {
+            const size_t values = (size_t)values_of(p, d);
+            x[d] = problem_spread(p, d, ((double)(rest % values) + 0.5) / (double)values);
+            rest /= values;
+        }
+        problem_repair(p, x);
+        batch_add(&s->batch, &s->common, x, KIND_SAMPLED, INFILL_KINDS);
+    }
+    s->n_vain = n <= COUNTED_MAX ? VAIN_MAX : s->n_vain;
+}
+
+/* No parents (every evaluation failed so far) or no new design: where nothing is under way, another Latin hypercube, or
+ * what is left of the space. */
 static void sample_again(Search *s)
 {
     if (s->common.pending.n > 0)
         return;
     add_samples(s, s->common.config->population);
-    s->n_vain = s->batch.n > 0 ? 0 : s->n_vain + 1;
+    if (s->batch.n == 0)
+        add_rest(s);
     surrogate_drop(s->surrogate); /* a resumed search has none here either */
 }
 
@@ -155,6 +187,8 @@ Status generation_ask(Search *s, Err *err)
         TRY(choose(s, err));
 
     /* 2. They are asked for. */
+    if (s->reason == STOP_NONE && c->pending.n == 0 && s->batch.room > 0)
+        s->n_vain = s->batch.n > 0 ? 0 : s->n_vain + 1;
     for (size_t i = 0; i < s->batch.n; i++) {
         Question q = s->batch.q[i];
         q.generation = c->generation;

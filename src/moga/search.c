@@ -8,7 +8,7 @@ const char *stop_reason_words(StopReason reason)
     static const char *const words[] = {
         [STOP_NONE] = "not stopped",
         [STOP_EVALUATIONS] = "all simulations spent",
-        [STOP_EXHAUSTED] = "no new design was found any more",
+        [STOP_EXHAUSTED] = "every design has been simulated",
         [STOP_TIME] = "time limit reached",
         [STOP_CONVERGED] = "the last search.stop_after simulations gained nothing above the noise of hypervolume",
         [STOP_ASKED] = "stopped on request",
@@ -23,7 +23,7 @@ static StopReason reason_to_stop(const Search *s)
     const Archive *a = &s->common.archive;
     if (screening_is_spent(&s->screening, &s->common))
         return s->screening.cost.whole == 1 && a->n < c->max_evals ? STOP_CONVERGED : STOP_EVALUATIONS;
-    return s->n_vain >= 100 ? STOP_EXHAUSTED : STOP_NONE;
+    return s->n_vain >= VAIN_MAX ? STOP_EXHAUSTED : STOP_NONE;
 }
 
 void search_stop(Search *s, StopReason reason)

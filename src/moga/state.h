@@ -20,6 +20,8 @@ typedef struct {
 
 typedef struct Search Search; /* moga/search.h */
 
+enum { VAIN_MAX = 100 };
+
 struct Search {
     Common common;
     Surrogate *surrogate;
@@ -32,7 +34,7 @@ struct Search {
     Screening screening;
     Scratch scratch;
     size_t n_before;    /* rows before the last step */
-    size_t n_vain;      /* samples one after the other in which every design was known */
+    size_t n_vain;      /* groups one after the other in which every design was known; VAIN_MAX: so is the space */
     size_t allowed;     /* questions that may be under way when the next answers enter */
     StopReason reason;  /* STOP_NONE: it goes on; else what is under way enters, and it is over */
     int is_behind_step; /* a group is to be made, where the search is not over; until then the archive has the results

@@ -1,6 +1,7 @@
 #include "study/improvement.h"
 
 #include "moga/convergence.h"
+#include "moga/search.h"
 #include "settings/options.h"
 
 Status improvement_expected(const Run *run, double *gain, Err *err)
@@ -10,6 +11,11 @@ Status improvement_expected(const Run *run, double *gain, Err *err)
     *gain = NAN;
     if (run->settings->search.fidelity != FIDELITY_OFF)
         return STATUS_OK;
+    if (run->n_sessions > 0 &&
+        strcmp(run->session[run->n_sessions - 1].stopped, stop_reason_words(STOP_EXHAUSTED)) == 0) {
+        *gain = 0; /* there is no other design */
+        return STATUS_OK;
+    }
     unsigned char *counts = calloc(2, n + 1), *on_front = counts + n;
     double *sense = calloc(m, sizeof *sense);
     for (size_t k = 0; sense && k < m; k++)
