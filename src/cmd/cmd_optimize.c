@@ -122,6 +122,27 @@ static void say_screening(Document *d, const StudySummary *sum)
                      sum->level_agreement, sum->has_left_screening ? ": too low, so that screening ended" : "");
 }
 
+/* Once, of a problem that is no tower: what constraint values that end at 0 leave out. */
+static void say_clipped(Document *d, const Run *run)
+{
+    char names[160] = "";
+    for (size_t c = 0, n = 0; c < run->schema.n_extra && run->schema.order.n == 0 && n < sizeof names; c++) {
+        double least = INFINITY, most = 0;
+        for (size_t i = 0; i < run->table.n; i++)
+            if (run->table.row[i].outcome == OUTCOME_OK) {
+                least = fmin(least, run->table.row[i].extra[c]);
+                most = fmax(most, run->table.row[i].extra[c]);
+            }
+        if (least == 0 && most > 0)
+            n += snprintf(names + n, sizeof names - n, "%s%s", n > 0 ? ", " : "", schema_extra(&run->schema, c)->name);
+    }
+    if (names[0])
+        document_say(d, "p",
+                     "%s: never below 0. The search learns more from values that also say how far a limit is, stress / "
+                     "allowed - 1 and not max(0, ...)",
+                     names);
+}
+
 /* Nothing succeeded, or nothing keeps search.limits: then the designs that come nearest. */
 static Status report_no_front(const Run *run, const StudySummary *summary, Err *err)
 {
@@ -142,6 +163,7 @@ static Status report_no_front(const Run *run, const StudySummary *summary, Err *
         figures_design(table, label, e->id, &run->schema, run_f(run, rows[i]), NULL, e->sd, e->extra);
     }
     document_say(&d, "p", "misses by: sum of the relative violations of search.limits and of g > 0.");
+    say_clipped(&d, run);
     document_print(&d, stdout);
     return run_why_empty(run, err);
 }
@@ -163,6 +185,7 @@ static void say_run(Document *d, const Run *run, const StudySummary *summary)
     if (run->n_repeats > 0)
         document_say(d, "p", "%zu of the simulations repeat a design, to average the noise (search.replicate_share)",
                      run->n_repeats);
+    say_clipped(d, run);
     say_screening(d, summary);
     say_front(d, run, summary);
     if (named.n > 0)

@@ -23,7 +23,7 @@ struct Surrogate {
     double *U, *F;          /* (n_max, n_dim) (n_max, n_out) centres */
     double *noise;          /* (n_max, n_out) variances of the values, in nuggets of each output */
     double *range;          /* (n_out) of each output in the archive */
-    double *errors;         /* (n_max) sorted for the median */
+    double *errors;         /* (n_max) sorted for the median; further n_max of distances */
     size_t *member;         /* (predict_max) members that are predicted */
     unsigned char *is_held; /* (n_dim) coordinates of choices: descents leave them */
     double *descent;        /* (predict_max + RBF_BLOCK, descent_length) */
@@ -76,7 +76,7 @@ static void layout(void *surrogate, Carve *c)
     CARVE(c, s->F, s->n_max * s->n_out);
     CARVE(c, s->noise, s->n_max * s->n_out);
     CARVE(c, s->range, s->n_out);
-    CARVE(c, s->errors, s->n_max);
+    CARVE(c, s->errors, 2 * s->n_max);
     CARVE(c, s->u, s->predict_max * n_dim);
     CARVE(c, s->f, s->predict_max * s->n_out);
     CARVE(c, s->e, s->predict_max * s->n_out);
@@ -165,6 +165,44 @@ static size_t select_centres(const Surrogate *s, const Archive *a, Infill *near)
     return s->n_max;
 }
 
+/* A limit that is never below 0, and 0 where it is kept, is learned with a slope there: minus the distance from the
+ * nearest design that violates it, times the median of what such designs have over theirs. No such design has more than
+ * its own distance comes to: of those that say no more than 1 it tells which are near. */
+static void grade(Surrogate *s, size_t k)
+{
+    double *slope = s->errors, *across = slope + s->n_max;
+    size_t n = 0;
+    for (size_t i = 0; i < s->n; i++)
+        if (s->F[i * s->n_out + k] > 0.0)
+            n++;
+        else if (s->F[i * s->n_out + k] < 0.0)
+            return;
+    if (n == 0 || n == s->n)
+        return;
+    for (size_t i = n = 0; i < s->n; i++) {
+        const double g = s->F[i * s->n_out + k];
+        double nearest = DBL_MAX;
+        for (size_t j = 0; j < s->n; j++) {
+            double square = (s->F[j * s->n_out + k] > 0.0) == (g > 0.0) ? DBL_MAX : DBL_EPSILON;
+            for (size_t d = 0; d < s->n_dim && square < nearest; d++) {
+                const double off = s->U[i * s->n_dim + d] - s->U[j * s->n_dim + d];
+                square += off * off;
+            }
+            nearest = fmin(nearest, square);
+        }
+        across[i] = sqrt(nearest);
+        if (g > 0.0)
+            slope[n++] = g / across[i];
+    }
+    sort_values(n, slope);
+    s->range[k] = 0.0;
+    for (size_t i = 0; i < s->n; i++) {
+        double *g = &s->F[i * s->n_out + k], far = slope[n / 2] * across[i];
+        *g = *g > 0.0 ? fmin(*g, far) : -far;
+        s->range[k] = fmax(s->range[k], fabs(*g));
+    }
+}
+
 /* Least squares on 1 and 0 (Rasmussen and Williams, 6.5) over all designs, thinned evenly beyond n_max. */
 static Status fit_success(Surrogate *s, const Archive *a, int tuning, Err *err)
 {
@@ -212,6 +250,8 @@ Status surrogate_fit(Surrogate *s, const Archive *a, Infill *near, Err *err)
             }
         }
         s->range[k] = max > min ? max - min : 1.0;
+        if (k >= a->n_obj)
+            grade(s, k);
     }
     const size_t share = a->n > s->n_max ? RETUNE_SHARE / 2 : RETUNE_SHARE;
     const int tuning = s->n_tuned == 0 || a->n >= s->n_tuned + (s->n_tuned + share - 1) / share;

@@ -11,6 +11,8 @@
  *   chance   probability that a predicted design keeps every limit, each normal about its prediction with the local
  *            leave-one-out error, times that it succeeds: another Rbf on 1 where designs succeeded and 0 where they
  *            failed, of all designs (least-squares classification: Rasmussen and Williams, 6.5)
+ *   clipped  a limit that is never below 0, and 0 where it is kept, is learned with a slope there: minus the distance
+ *            from the nearest design that violates it; where it says no more than 0 and 1 these have their distance too
  *           (choices and whole numbers: Garrido-Merchan and Hernandez-Lobato, Neurocomputing 380 (2020) 20-35)
  *
  * Dimension   more than RBF_DIM_MAX coordinates: there is no surrogate
