@@ -209,7 +209,8 @@ TEST(whatever_is_not_read_is_refused_with_its_line)
     static const char *const BAD[][2] = {
         {"\n\nset x 1\nfor {set i 0} {$i < 3} {incr i} {\nnode 1 0 0\n}\n", "model.tcl:5: node: 'model BasicBuilder"},
         {"model BasicBuilder -ndm 3 -ndf 6\n", "model.tcl:1: model: only -ndm 2 -ndf 3"},
-        {"model BasicBuilder -ndm 1 -ndf 1\n", "model.tcl:1: model: -ndm 1 has no heights of storeys"},
+        {"model BasicBuilder -ndm 1 -ndf 2\n", "model.tcl:1: model: only -ndm 2 -ndf 3 (or 2), and -ndm 1 -ndf 1"},
+        {"model b -ndm 1\nnode 1 0 0\n", "model.tcl:2: node: behind TAG x only -mass mx is read"},
         {"geomTransf Bent 1\n", "model.tcl:1: geomTransf: only Linear"},
         {"geomTransf Linear 1 -jntOffset 1 2\n", "only -jntOffset dXi dYi dXj dYj"},
         {NODES "element zeroLength 1 1 2 -mat 1 -dir 1\n",
@@ -392,6 +393,32 @@ TEST(a_cantilever_of_one_mass_is_a_building_of_one_floor)
     building_free(&b);
 }
 
+/* A shear building as it is written without a plane: floors in the order of the script, heights by the setting. */
+TEST(a_stick_of_springs_at_one_place_is_a_shear_building_whose_heights_the_settings_say)
+{
+#define STICK(x, y, held)                                                                                              \
+    "node 7 " x y "\nnode 2 " x y " -mass 5" y "\nnode 9 " x y "; mass 9 4" y "\nfixZ 0 1 1 1\nfix 7 1" held           \
+    "\nuniaxialMaterial Elastic 1 3e4; uniaxialMaterial Elastic 2 1e4\nelement zeroLength 1 7 2 -mat 1 -dir 1\n"       \
+    "element twoNodeLink 2 2 9 -mat 2 -dir 1 -orient 1 0 0\n"
+    static const char *const STICKS[] = {"model b -ndm 1 -ndf 1\n" STICK("0", "", ""),
+                                         "model b -ndm 2 -ndf 2\n" STICK("3", " 0", " 1") "fix 2 0 1; fix 9 0 1\n"};
+    for (size_t i = 0; i < N_OF(STICKS); i++) {
+        BuildingOptions o = options_of(STICKS[i], BUILDING_KN_M_T);
+        Building b;
+        o.heights_m = (NumberList){2, {5, 3}};
+        CHECK_OK(building_load(&b, &o, &err), &err);
+        const double K[] = {4e7, -1e7, -1e7, 1e7}, M[] = {5e3, 0, 0, 4e3};
+        assert_int_equal(b.n, 2);
+        assert_false(b.heights_assumed);
+        assert_true(b.storey_m[0] == 5 && b.storey_m[1] == 3);
+        for (int k = 0; k < 4; k++) {
+            assert_close(b.K[k], K[k], 1e-12);
+            assert_true(fabs(b.M[k] - M[k]) <= 1e-9);
+        }
+        building_free(&b);
+    }
+}
+
 /* Inputs that were refused or read wrongly once, where the folder that holds them is there. */
 TEST(the_models_of_the_shared_cases_are_read_or_refused)
 {
@@ -405,8 +432,7 @@ TEST(the_models_of_the_shared_cases_are_read_or_refused)
                                            {"info_script", NULL},
                                            {"cd", NULL},
                                            {"defaultunits", NULL},
-                                           {"remove_ele", "remove element takes away"},
-                                           {"shear1d", "-ndm 1 has no heights"}};
+                                           {"remove_ele", "remove element takes away"}};
     const char *folder = access("../shared/cases", F_OK) == 0 ? "../shared/cases" : "../../shared/cases";
     if (access(folder, F_OK) != 0)
         skip();

@@ -31,15 +31,19 @@ TEST(numbers_come_out_as_they_were_written)
     table_free(&t);
 }
 
-TEST(comments_blank_lines_and_foreign_line_ends_are_skipped)
+TEST(comments_blank_lines_and_foreign_line_ends_are_skipped_and_blanks_part_numbers)
 {
-    Table t;
-    CHECK_OK(parse(&t, "# who\r\n\r\n  # what\r\n 1 , 2 \r\n\r\n\t3\t,4\r\n# end", 0, &err), &err);
-    const double want[] = {1, 2, 3, 4};
-    assert_int_equal(t.n_rows, 2);
-    assert_null(t.names);
-    assert_memory_equal(t.values, want, sizeof want);
-    table_free(&t);
+    static const char *const TEXTS[] = {"# who\r\n\r\n  # what\r\n 1 , 2 \r\n\r\n\t3\t,4\r\n# end",
+                                        "#\n   1.0e+00  2\n3\t 4 \n", "1,0 2,0\n3,0 4,0\n"};
+    for (size_t i = 0; i < N_OF(TEXTS); i++) {
+        Table t;
+        CHECK_OK(parse(&t, TEXTS[i], 0, &err), &err);
+        const double want[] = {1, 2, 3, 4};
+        assert_int_equal(t.n_rows, 2);
+        assert_null(t.names);
+        assert_memory_equal(t.values, want, sizeof want);
+        table_free(&t);
+    }
 }
 
 TEST(a_column_is_found_by_its_name)
@@ -67,7 +71,8 @@ TEST(each_fault_names_file_line_and_column)
     expect_refusal("1,2\n3,4,\n", 0, "there.csv:2: more than 2 columns");
     expect_refusal("1,2\n,4\n", 0, "there.csv:2: column 1 of 2 is missing");
     expect_refusal("# c\n\n1,2\n3,x\n", 0, "there.csv:4: column 2");
-    expect_refusal("1 2\n", 0, "there.csv:1: column 1 is not a number");
+    expect_refusal("1 2\n3 4 5\n", 0, "there.csv:2: more than 2 columns");
+    expect_refusal("a b\n1 2\n", 1, "there.csv:2: column 1 is not a number");
     expect_refusal("1,2m\n", 0, "there.csv:1: ");
     expect_refusal("1,nan\n", 0, "there.csv:1: column 2 is nan");
     expect_refusal("1,-inf\n", 0, "there.csv:1: column 2 is -inf");

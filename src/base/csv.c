@@ -181,10 +181,14 @@ static int next_row(Reading *r, const char **from, const char **to)
             *r->separator = l->from[4];
             continue;
         }
-        if (!*r->separator)
-            *r->separator = memchr(l->from, ';', n)                                              ? ';'
-                            : memchr(l->from, '\t', n) && csv_has_decimal_commas(l->from, l->to) ? '\t'
-                                                                                                 : ',';
+        if (!*r->separator) {
+            const int has_commas = !csv_has_decimal_commas(l->from, l->to);
+            *r->separator = memchr(l->from, ';', n)                     ? ';'
+                            : has_commas                                ? ','
+                            : memchr(l->from, '\t', n)                  ? '\t'
+                            : !r->has_header && memchr(l->from, ' ', n) ? ' '
+                                                                        : ',';
+        }
         *from = *r->separator == '\t' ? l->raw : l->from; /* a tab is a blank, too */
         *to = *r->separator == '\t' && l->next[-1] == l->mark ? l->next - 1 : *r->separator == '\t' ? l->next : l->to;
         for (const char *p = *from; p <= *to;) { /* spreadsheets write lines of empty cells where rows were emptied */

@@ -5,7 +5,8 @@
  *             and blanks around them are dropped
  *   numbers   1.5, 1,5, 1.5E+3, 1.5D+3; finite ones only, decimal points or decimal commas, not both in one file
  *   tables    rows of equally many cells; lines that are blank, of empty cells, or begin with # are passed over.
- *             Cells are parted by commas, semicolons or tabs: the first line decides, or "sep=;" above it
+ *             Cells are parted by commas, semicolons or tabs, of numbers without names by blanks too: the first line
+ *             decides, or "sep=;" above it
  *
  * Ownership  Lines borrow path and text; table_read allocates, table_free releases (an empty one is fine)
  * Threads    no state.   Errors  "PATH:LINE: what was found" */

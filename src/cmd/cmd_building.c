@@ -177,8 +177,7 @@ static Status show(const Args *args, const Model *m, Err *err)
 {
     json_t *floors = json_array(), *modes = json_array(), *cores = json_array(), *row;
     size_t j;
-    if (m->frame.note[0])
-        fprintf(stderr, "note: %s: skipped:%s\n", m->s.building.model, m->frame.note);
+    building_warnings(&m->b, warn_on_stderr, NULL);
     TRY(condensation_warnings(&m->b, &m->s.building, warn_on_stderr, NULL, err));
     add_rows(m, floors, modes, cores);
     Document d = {.data =

@@ -8,7 +8,7 @@ namespace eval x {}
 # What has a tag, in the units of the model: node {x z}, fixed and mass {x z rot}, element (printed words),
 # uniaxialMaterial E, section and beamIntegration {EA EI GA}, geomTransf {offsets of i and j}; follows(NODE,DOF).
 foreach list {nodes elements arms notes refused command said shown} {set $list {}}
-foreach flag {ready wiped analysed ended failed deep} {set $flag 0}
+foreach flag {dims wiped analysed ended failed deep} {set $flag 0}
 set dofs 3
 set commands_max 1000000
 
@@ -47,34 +47,32 @@ proc note word {
     if {$word ni $::notes} {lappend ::notes $word}
 }
 
-# As many numbers as a node has unknowns, of the first two or three words.
+# As many numbers as a node has unknowns, of the first words.
 proc unknowns words {
-    if {[llength $words] < $::dofs} {error "wants TAG [lindex {- - {x y} {x y rot}} $::dofs]"}
-    return [lrange [concat [numbers {*}[lrange $words 0 $::dofs-1]] 0] 0 2]
+    if {[llength $words] < $::dofs} {error "wants TAG [lrange {x y rot} 0 $::dofs-1]"}
+    return [lrange [concat [numbers {*}[lrange $words 0 $::dofs-1]] 0 0] 0 2]
 }
 
 # ---- nodes and what they are given --------------------------------------------------------------------------------
 
 proc x::model {type args} {
-    set ndm 0
-    set ::dofs 3
-    foreach {key value} $args {
-        if {$key eq "-ndm"} {set ndm $value} elseif {$key eq "-ndf"} {set ::dofs $value}
-    }
-    if {$ndm == 1} {error "-ndm 1 has no heights of storeys; write such a shear model as storeys.csv (docs/building.md)"}
-    if {$ndm != 2 || $::dofs ni {2 3}} {error "only -ndm 2 -ndf 3 (or 2, of bars) is read"}
-    set ::ready 1
+    array set given [list -ndm 0 -ndf {} {*}$args]
+    set ::dims $given(-ndm)
+    set ::dofs [expr {$given(-ndf) ne {} ? $given(-ndf) : $::dims == 1 ? 1 : 3}]
+    if {"$::dims $::dofs" ni {"2 3" "2 2" "1 1"}} {error "only -ndm 2 -ndf 3 (or 2), and -ndm 1 -ndf 1 are read"}
 }
 
-proc x::node {tag x z args} {
+proc x::node {tag args} {
     if {$::wiped} {error "the model above was wiped; keep one of the two"}
-    if {!$::ready} {error "'model BasicBuilder -ndm 2 -ndf 3' must stand above"}
+    if {!$::dims} {error "'model BasicBuilder -ndm 2 -ndf 3' must stand above"}
     set t [new node $tag]
-    if {$args ne {} && ([lindex $args 0] ne "-mass" || [llength $args] <= $::dofs)} {
-        error "behind TAG x y only -mass mx my mr is read"
+    set at [numbers {*}[lrange $args 0 $::dims-1]]
+    set args [lrange $args $::dims end]
+    if {[llength $at] < $::dims || ($args ne {} && ([lindex $args 0] ne "-mass" || [llength $args] <= $::dofs))} {
+        error "behind TAG [lrange {x y} 0 $::dims-1] only -mass [lrange {mx my mr} 0 $::dofs-1] is read"
     }
-    set ::node($t) [numbers $x $z]
-    set ::fixed($t) [list 0 0 [expr {$::dofs == 2}]]
+    set ::node($t) [expr {$::dims == 1 ? {0 0} : $at}]
+    set ::fixed($t) [list 0 [expr {$::dofs == 1}] [expr {$::dofs < 3}]]
     set ::mass($t) {0 0 0}
     lappend ::nodes $t
     if {$args ne {}} {mass $t {*}[lrange $args 1 end]}
@@ -398,7 +396,7 @@ proc x::element {type tag i j args} {
 # ---- around the model ---------------------------------------------------------------------------------------------
 
 # Loads, damping, analysis, output, display: no part of the structure.
-set skipped {algorithm analysis analyze constraints database defaultUnits display eigen eleLoad eleResponse fconfigure fill flush
+set skipped {algorithm analysis analyze constraints database defaultUnits display eigen eleLoad eleResponse fconfigure fill fixZ flush
     getTime groundMotion imposedMotion initialize integrator load loadConst logFile modalDamping modalProperties nodeAccel
     nodeBounds nodeDisp nodeEigenvector nodeReaction nodeVel numberer parameter pattern plane port print printA projection prp puts
     rayleigh reactions record recorder region remove reset save setPrecision setTime sp start stop system test timeSeries viewWindow
@@ -614,6 +612,16 @@ proc carry {} {
     }
 }
 
+# Nodes of a shear model that all stand at one place have no heights: the floors are in the order of the script.
+proc stack {} {
+    if {$::dofs == 3 || [llength [lsort -unique [lmap t $::nodes {set ::node($t)}]]] > 1} return
+    set z 0
+    foreach t $::nodes {
+        if {![lindex $::fixed($t) 0]} {set ::node($t) [list 0 [incr z]]}
+    }
+    puts heights
+}
+
 # Masses of elements are lumped at their nodes, as OpenSees does; a spring this much stiffer than any beam is rigid, and
 # more of it would be lost in rounding.
 proc finish {} {
@@ -648,6 +656,7 @@ proc print_frame {} {
     set F $::force
     set M [expr {$F / $L}]
     set index -1
+    stack
     foreach t $::nodes {
         set at($t) [incr index]
         lassign [concat $::node($t) $::mass($t)] x z mx mz mr

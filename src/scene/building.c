@@ -51,7 +51,7 @@ static Status check_units(const Building *b, const BuildingOptions *o, int is_ma
     const int is_right = is_period(per_storey);
     double mass = 0;
     char fits[240] = "";
-    if (period < PERIOD_MIN || (isfinite(period) && period > 1.0 / PERIOD_MIN))
+    if (isnan(period + b->omega[b->n - 1]) || period < PERIOD_MIN || (isfinite(period) && period > 1.0 / PERIOD_MIN))
         return bad_data(err, "%s: the first period is %.3g s: is a stiffness or a mass wrong?", o->model, period);
     for (int j = 0; j < b->n; j++)
         mass += building_floor_mass(b, j);

@@ -255,6 +255,10 @@ static Status read_frame(BuildingFiles *b, const BuildingOptions *o, Err *err)
         }
         if (b->full.n == n)
             frame_full_free(&b->full);
+        if (f.has_no_heights) {
+            free(b->storey_m);
+            b->storey_m = b->yield_drift = NULL;
+        }
     }
     if (status == STATUS_OK && o->modes > 0) {
         frame_full_free(&b->full);

@@ -78,9 +78,10 @@ typedef struct {
     FrameNode *node;
     FrameSection *section;
     FrameElement *element;
-    void *names;      /* of all of these: a tree of <search.h> */
-    char note[400];   /* what of an OpenSees model was skipped; empty: nothing */
-    double *storey_m; /* (n_floors) heights; the first above the highest node that is held sideways below floor 1 */
+    void *names;        /* of all of these: a tree of <search.h> */
+    char note[400];     /* what of an OpenSees model was skipped; empty: nothing */
+    int has_no_heights; /* of a shear model: its nodes stand above one another in no known distance */
+    double *storey_m;   /* (n_floors) heights; the first above the highest node that is held sideways below floor 1 */
 } Frame;
 
 /* A part is copied; a node is tied to none. */

@@ -77,6 +77,8 @@ static Status take_frame(Frame *f, FILE *in, Err *err)
             fscanf(in, "%47s %lf %lf %d %d %d %lf %lf %lf", node.name, &node.x, &node.z, &node.fixed[0], &node.fixed[1],
                    &node.fixed[2], &node.mass[0], &node.mass[1], &node.mass[2]) == 9) {
             status = frame_add_node(f, &node, err);
+        } else if (kind[0] == 'h') {
+            f->has_no_heights = 1;
         } else if (kind[0] == 't' && fscanf(in, "%d %d %d", &a, &b, &d) == 3 && a >= 0 && b >= 0 && a < n_nodes &&
                    b < n_nodes && d >= 1 && d <= FRAME_DOFS) {
             dof[d - 1] = 1;

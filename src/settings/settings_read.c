@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "base/csv.h"
+#include "base/text.h"
 #include "scene/foundation.h"
 #include "settings/rules.h"
 #include "settings/table.h"
@@ -71,6 +72,31 @@ static void anchor_path(char path[OPTION_TEXT_MAX], void *user)
     snprintf(anchored, sizeof anchored, "%.*s/%s", (int)(slash - r->path), r->path, path);
     if (strlen(anchored) < OPTION_TEXT_MAX && access(anchored, F_OK) == 0)
         memcpy(path, anchored, strlen(anchored) + 1);
+}
+
+/* The same of a command's program, where that is a path, and of its script: the first word behind it that is no option.
+ * What else stands there is the program's own; so is all from the first quote on. */
+static void anchor_command(char command[OPTION_TEXT_MAX], Reading *r)
+{
+    char word[OPTION_TEXT_MAX], rest[OPTION_TEXT_MAX], quoted[4 * OPTION_TEXT_MAX + 3];
+    struct stat st;
+    int is_program = 1, is_script = 0;
+    for (char *at = skip_blanks(command); *at && !is_script; is_program = 0) {
+        size_t n = strcspn(at, " \t");
+        snprintf(word, sizeof word, "%.*s", (int)n, at);
+        snprintf(rest, sizeof rest, "%s", at + n);
+        is_script = !is_program && *word != '-';
+        if (strpbrk(word, "'\"\\"))
+            return;
+        if (is_script ? strpbrk(word, "./") != NULL : is_program && strchr(word, '/'))
+            anchor_path(word, r);
+        if (strlen(word) > n && stat(word, &st) == 0 && S_ISREG(st.st_mode) &&
+            strlen(text_shell(word, quoted)) + strlen(rest) < (size_t)(command + OPTION_TEXT_MAX - at)) {
+            sprintf(at, "%s%s", quoted, rest);
+            n = strlen(quoted);
+        }
+        at = skip_blanks(at + n);
+    }
 }
 
 /* Without the quotes around it, as TOML writes a text; one with quotes or escapes inside stays what it is. */
@@ -189,6 +215,8 @@ static void take_line(Reading *r, char *line)
     }
     r->seen[i] = at;
     table_change_files(r->s, i, anchor_path, r);
+    if (strcmp(settings_key(i), "problem.command") == 0)
+        anchor_command(r->s->problem.command, r);
 }
 
 /* At the first key that the sentence names and the file sets. */
