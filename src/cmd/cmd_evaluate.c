@@ -95,7 +95,7 @@ static json_t *add_fractiles(Document *d, const Evaluations *e)
             for (int k = 0; k < MEASURES_LISTED; k++)
                 json_object_set_new(lists, measure(k)->name, json_column(rows, measure(k)->name));
             json_object_set_new(one, KEYS[f][0], lists);
-            json_array_extend(d->rows, rows);
+            json_array_extend(d->summaries, rows);
             json_decref(rows);
         }
         if (json_object_size(one) > 0)
@@ -107,7 +107,7 @@ static json_t *add_fractiles(Document *d, const Evaluations *e)
 
 static Document describe_all(const Args *args, const Chosen *c, const Evaluations *e)
 {
-    Document d = {.rows = json_array()};
+    Document d = {.rows = json_array(), .summaries = json_array()};
     json_t *records = json_array(), *unreadable = json_array();
     for (size_t i = 0; i < e->n_records * e->n_levels; i++)
         if (e->run[i].record->readable == STATUS_OK)
@@ -399,10 +399,32 @@ static Status evaluate_with(const Args *args, Settings *s, const Run *run, Err *
     return run ? evaluate_of_run(args, s, run, word, err) : evaluate_by_config(args, s, word, err);
 }
 
+/* Of simulations that others have made. */
+static Status evaluate_counts(const Args *args, Err *err)
+{
+    Fragilities f = {0};
+    Document d = {.drawing = "fragility", .width = 430};
+    Status status = counts_read(&f, args_value(args, "--counts"), args_value(args, "--hazard"), err);
+    if (status == STATUS_OK) {
+        const Evaluations e = {.intensity = f.intensity, .n_levels = f.n_levels, .level = f.level};
+        d.data = json_of("ida=%p", json_pack("{so}", f.intensity, json_numbers(f.n_levels, f.level)));
+        document_fragilities(&d, &f, &e);
+        status = document_give(&d, args, err);
+    }
+    fragilities_free(&f);
+    return status;
+}
+
 static Status run(const Args *args, Err *err)
 {
     Settings s;
     Run r = {0};
+    TRY(args_alone(args, "--counts",
+                   "--design --record --pga --sa --fragility --set --csv --pelicun --full-model --replicates", err));
+    if (args_has(args, "--counts") == (args->operand != NULL))
+        return misused(err, "imtet evaluate takes a CONFIG, a RUN or --counts; for example: %s", CMD_EVALUATE.example);
+    if (!args->operand)
+        return evaluate_counts(args, err);
     if (!run_is_there(args->operand))
         return evaluate_with(args, &s, NULL, err);
     TRY(run_read(&r, args->operand, err));
@@ -422,6 +444,7 @@ static const ArgOption OPTIONS[] = {
           "FROM:STEP:TO as above"),
     VALUE("--fragility", "LIST",
           "with FROM:STEP:TO: probability of exceeding drift_ratio=0.02,j3_g=5 by intensity; limits: those of the run"),
+    VALUE("--counts", "FILE", "instead of a design: fragility of a CSV of intensity (sa_g, say), exceeded, of"),
     VALUE("--hazard", "FILE",
           "CSV of sa_g (or pga_g) and rate_per_year: adds yearly rates of exceedance and the annual loss"),
     OPTION_UNIT,
@@ -443,7 +466,7 @@ static const ArgOption OPTIONS[] = {
 const Command CMD_EVALUATE = {
     .name = "evaluate",
     .group = GROUP_DECIDE,
-    .operand = "CONFIG|RUN",
+    .operand = "[CONFIG|RUN]",
     .summary = "one design on other earthquakes, or on the full model of the building",
     .example = "imtet evaluate results/quick --design knee --record builtin:elcentro-like",
     .details =

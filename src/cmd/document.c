@@ -31,6 +31,7 @@ void document_free(Document *d)
 {
     json_decref(d->parts);
     json_decref(d->rows);
+    json_decref(d->summaries);
     json_decref(d->data);
     json_decref(d->drawn);
     *d = (Document){0};
@@ -416,7 +417,12 @@ Status show_json(json_t *all, Err *err)
 Status document_give(Document *d, const Args *args, Err *err)
 {
     const char *csv = args_value(args, "--csv"), *svg = args_value(args, "--svg");
+    char path[PATH_MAX];
     Status status = csv && d->rows ? rows_write(json_incref(d->rows), csv, err) : STATUS_OK;
+    if (csv && json_array_size(d->summaries) > 0 && strcmp(csv, "-") != 0) { /* FILE-fractiles.csv */
+        snprintf(path, sizeof path, "%.*s-fractiles.csv", (int)strlen(csv) - 4 * text_ends(csv, ".csv"), csv);
+        THEN(status, rows_write(json_incref(d->summaries), path, err));
+    }
     if (svg)
         THEN(status, drawing_save(d->drawing, json_incref(d->drawn ? d->drawn : d->data), d->width, svg, err));
     if (args_has(args, "--json"))

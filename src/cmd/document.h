@@ -8,7 +8,9 @@
  *            digits, or those that are known
  *   HTML     the same; a column or a row that a measure names (evaluate/measures.h) has its title and unit. The one
  *            place where words come into a page: all of them are escaped
- *   CSV      `rows`, with all digits     JSON    `data`     drawing    `drawing`, one of DRAWINGS of web/app/8-paper.js
+ *   CSV      `rows`, with all digits; `summaries` of them into FILE-fractiles.csv
+ *   JSON     `data`
+ *   drawing  `drawing`, one of DRAWINGS of web/app/8-paper.js
  *
  * Ownership  json_t that are given are taken over; document_give, _print and _html release all of it,
  *            after which the Document is empty */
@@ -19,7 +21,7 @@
 #include "sim/result.h"
 
 typedef struct {
-    json_t *parts, *rows, *data, *drawn; /* drawn: data of the drawing; NULL: those of JSON */
+    json_t *parts, *rows, *summaries, *data, *drawn; /* drawn: data of the drawing; NULL: those of JSON */
     const char *drawing;
     int width; /* [px] */
 } Document;

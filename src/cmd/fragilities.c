@@ -51,11 +51,21 @@ static Status take_hazard(Fragilities *f, const Table *t, const char *intensity,
     return STATUS_OK;
 }
 
+/* path NULL: none. */
+static Status read_hazard(Fragilities *f, const char *path, const char *intensity, Err *err)
+{
+    Table t = {0};
+    Status status = path ? table_read(&t, path, TABLE_HEADED, err) : STATUS_OK;
+    if (status == STATUS_OK && path)
+        status = take_hazard(f, &t, intensity, err);
+    table_free(&t);
+    return status;
+}
+
 Status fragilities_read(Fragilities *f, const Schema *schema, const char *list, const char *hazard,
                         const char *intensity, Settings *s, Err *err)
 {
     Err why = {0};
-    Table t = {0};
     char item[128];
     f->schema = schema;
     if (strcmp(list, "limits") != 0)
@@ -74,63 +84,87 @@ Status fragilities_read(Fragilities *f, const Schema *schema, const char *list, 
         if (k >= MEASURES_LISTED || k == MEASURE_ANNUAL_LOSS)
             return misused(err, "--fragility: neither a probability nor annual_loss is a limit of one simulation");
     }
-    Status status = hazard ? table_read(&t, hazard, TABLE_HEADED, err) : STATUS_OK;
-    if (status == STATUS_OK && hazard)
-        status = take_hazard(f, &t, intensity, err);
+    return read_hazard(f, hazard, intensity, err);
+}
+
+/* Each row an intensity; the column that is named otherwise is that. */
+static Status take_counts(Fragilities *f, const Table *t, Err *err)
+{
+    const int exceeded = table_column(t, "exceeded"), of = table_column(t, "of"), at = 3 - exceeded - of;
+    if (exceeded < 0 || of < 0 || t->n_cols != 3 || t->n_rows < 2 || t->n_rows > IDA_LEVELS_MAX)
+        return bad_data(err,
+                        "%s: wanted are three columns, an intensity (sa_g, say), exceeded and of, and 2 to %d rows",
+                        t->path, IDA_LEVELS_MAX);
+    TRY_ROOM(f->level, t->n_rows, "intensities", err);
+    snprintf(f->intensity, sizeof f->intensity, "%s", t->names[at]);
+    for (size_t i = 0; i < t->n_rows; i++) {
+        const double *row = t->values + 3 * i, x = f->level[i] = row[at];
+        f->n_at[i] = (size_t)fmax(row[of], 0);
+        f->exceeded[i] = (size_t)fmax(row[exceeded], 0);
+        if (!(x > (i > 0 ? f->level[i - 1] : 0) && isfinite(x)) || (double)f->n_at[i] != row[of] ||
+            (double)f->exceeded[i] != row[exceeded] || row[of] < 1 || row[exceeded] > row[of])
+            return bad_data(err,
+                            "%s:%d: intensities must rise above 0, `of` is a whole number, `exceeded` one up to it",
+                            t->path, t->line[i]);
+    }
+    f->n_levels = t->n_rows;
+    return STATUS_OK;
+}
+
+Status counts_read(Fragilities *f, const char *path, const char *hazard, Err *err)
+{
+    Table t;
+    TRY(table_read(&t, path, TABLE_HEADED, err));
+    Status status = take_counts(f, &t, err);
     table_free(&t);
+    THEN(status, read_hazard(f, hazard, f->intensity, err));
+    f->counted = path;
     return status;
 }
 
 void fragilities_free(Fragilities *f)
 {
     free(f->hazard);
+    free(f->level);
 }
 
 /* ---- curves ------------------------------------------------------------------------------------------------------ */
 
-/* One limit under one case. */
+/* One limit under one case, or counts. */
 typedef struct {
-    const Limit *limit;
-    const char *name;
-    SceneKind which;
+    const char *name, *relation; /* NULL: of counts, whose bound and scene are not known */
+    double bound;
+    const SceneCase *scene;
     size_t n_at[IDA_LEVELS_MAX], exceeded[IDA_LEVELS_MAX], n, hits;
     Fragility fit;
     double low, high; /* median, 95 % */
     double rate;      /* per year; NAN: not known */
 } Curve;
 
-static void find_curve(const Fragilities *f, const Evaluations *e, size_t i, SceneKind which, Curve *c)
+/* limit NULL: of counts. */
+static Curve curve_of(const Fragilities *f, const Evaluations *e, const Limit *limit, SceneKind which)
 {
-    const Limit *limit = &f->limits.limit[i];
-    *c = (Curve){.limit = limit, .name = schema_objective(f->schema, limit->result)->name, .which = which};
-    c->fit = ida_fragility(e, which, f->schema->order.of[limit->result], limit, c->n_at, c->exceeded);
-    for (size_t l = 0; l < e->n_levels; l++) {
-        c->n += c->n_at[l];
-        c->hits += c->exceeded[l];
+    Curve c = {.name = f->counted, .bound = NAN};
+    if (limit) {
+        c = (Curve){.name = schema_objective(f->schema, limit->result)->name,
+                    .relation = limit->sign > 0 ? ">" : "<",
+                    .bound = limit->bound,
+                    .scene = &SCENES[which]};
+        c.fit = ida_fragility(e, which, f->schema->order.of[limit->result], limit, c.n_at, c.exceeded);
+    } else {
+        memcpy(c.n_at, f->n_at, sizeof c.n_at);
+        memcpy(c.exceeded, f->exceeded, sizeof c.exceeded);
+        c.fit = fragility_fit(e->n_levels, e->level, c.n_at, c.exceeded);
     }
-    const double range = exp(CONFIDENCE * c->fit.sd_ln_median);
-    c->low = c->fit.median / range;
-    c->high = c->fit.median * range;
-    c->rate = f->hazard ? fragility_rate(&c->fit, f->n_hazard, f->hazard) : NAN;
-}
-
-typedef void CurveFn(const Fragilities *f, const Evaluations *e, const Curve *c, void *user);
-
-static void each_curve(const Fragilities *f, const Evaluations *e, CurveFn *take, void *user)
-{
-    Curve c;
-    for (size_t i = 0; i < f->limits.n; i++)
-        for (SceneKind k = 0; k < N_SCENES; k++) {
-            if (!evaluated_has(e, e->run, k))
-                continue;
-            find_curve(f, e, i, k, &c);
-            take(f, e, &c, user);
-        }
-}
-
-static const char *relation(const Curve *c)
-{
-    return c->limit->sign > 0 ? ">" : "<";
+    for (size_t l = 0; l < e->n_levels; l++) {
+        c.n += c.n_at[l];
+        c.hits += c.exceeded[l];
+    }
+    const double range = exp(CONFIDENCE * c.fit.sd_ln_median);
+    c.low = c.fit.median / range;
+    c.high = c.fit.median * range;
+    c.rate = f->hazard ? fragility_rate(&c.fit, f->n_hazard, f->hazard) : NAN;
+    return c;
 }
 
 /* Why the median is not known, and what helps. */
@@ -149,11 +183,11 @@ static void unknown_words(const Curve *c, char text[4 * FIGURE_MAX])
         snprintf(text, 4 * FIGURE_MAX, "above %g: end higher", from);
 }
 
-static void add_row(const Fragilities *f, const Evaluations *e, const Curve *c, void *table)
+static void add_row(const Fragilities *f, const Evaluations *e, const Curve *c, json_t *table)
 {
     char text[4 * FIGURE_MAX], column[64];
-    snprintf(text, sizeof text, "%s%s%g", c->name, relation(c), c->limit->bound);
-    json_t *row = json_put(figures_row(table), "limit=%s scene=%s", text, SCENES[c->which].words);
+    snprintf(text, sizeof text, c->scene ? "%s%s%g" : "%s", c->name, c->relation, c->bound);
+    json_t *row = json_put(figures_row(table), "limit=%s scene=%s", text, c->scene ? c->scene->words : NULL);
     snprintf(column, sizeof column, "median %s (95 %%)", e->intensity);
     figures_put_as(row, column, c->fit.median, c->low, c->high, "(");
     unknown_words(c, text);
@@ -178,19 +212,28 @@ static json_t *counts(size_t n, const size_t of[])
     return list;
 }
 
-static void add_object(const Fragilities *f, const Evaluations *e, const Curve *c, void *list)
+static json_t *describe(const Fragilities *f, const Evaluations *e, const Curve *c)
 {
     const double range[] = {c->low, c->high};
     json_t *o = json_of("of=%s relation=%s bound=%g scene=%s median=%g median_95=%p beta=%g sd_ln_median=%g sd_beta=%g",
-                        c->name, relation(c), c->limit->bound, SCENES[c->which].key, c->fit.median,
+                        c->name, c->relation, c->bound, c->scene ? c->scene->key : NULL, c->fit.median,
                         json_numbers(2, range), c->fit.beta, c->fit.sd_ln_median, c->fit.sd_beta);
     json_put(o, "median_between=%p simulations=%p exceeded=%p", json_numbers(2, c->fit.between),
              counts(e->n_levels, c->n_at), counts(e->n_levels, c->exceeded));
     if (f->hazard)
         json_put(o, "rate_per_year=%g probability_50_years=%g probability_where_hazard_begins=%g", c->rate,
                  -expm1(-YEARS * c->rate), fragility_at(&c->fit, f->hazard[0]));
-    put_device(o, c->which, &e->run[0].device[c->which]);
-    json_array_append_new(list, o);
+    return o;
+}
+
+/* Of one limit under one case; limit NULL: of counts. */
+static void add_curve(const Fragilities *f, const Evaluations *e, const Limit *limit, SceneKind which, json_t *table,
+                      json_t *list)
+{
+    const Curve c = curve_of(f, e, limit, which);
+    json_t *o = describe(f, e, &c);
+    add_row(f, e, &c, table);
+    json_array_append_new(list, limit ? put_device(o, which, &e->run[0].device[which]) : o);
 }
 
 /* ---- annual loss ------------------------------------------------------------------------------------------------- */
@@ -227,11 +270,15 @@ static json_t *annual_losses(const Fragilities *f, const Evaluations *e)
 
 void document_fragilities(Document *d, const Fragilities *f, const Evaluations *e)
 {
-    json_t *list = json_array();
-    each_curve(f, e, add_row, document_table(d));
-    each_curve(f, e, add_object, list);
+    json_t *list = json_array(), *table = document_table(d);
+    if (f->counted)
+        add_curve(f, e, NULL, SCENE_IMPACT, table, list);
+    for (size_t i = 0; i < f->limits.n; i++)
+        for (SceneKind k = 0; k < N_SCENES; k++)
+            if (evaluated_has(e, e->run, k))
+                add_curve(f, e, &f->limits.limit[i], k, table, list);
     json_put(d->data, "fragility=%p", list);
-    if (!f->hazard)
+    if (!f->hazard || f->counted)
         return;
     json_t *losses = annual_losses(f, e);
     json_array_extend(document_table(d), losses);

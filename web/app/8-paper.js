@@ -18,7 +18,7 @@ function panels(host, { title = "", names = [], columns, height }) {
 
 // ---- what commands draw of their own JSON (--svg)
 const curve = (x, y, stroke, strokeWidth, more) => ({ mark: "line", x, y, stroke, strokeWidth, ...more }), DASHED = { strokeDasharray: "6 4" };
-const levelsOf = ({ ida }) => [ida.sa_g ?? ida.pga_g, { label: `${ida.sa_g ? "spectral" : "peak ground"} acceleration [g]`, zero: true, ticks: 5 }];
+const levelsOf = ({ ida: { sa_g: sa, pga_g: pga, ...other } }) => [sa ?? pga ?? Object.values(other)[0], { label: sa ? "spectral acceleration [g]" : pga ? "peak ground acceleration [g]" : Object.keys(other)[0], zero: true, ticks: 5 }];
 
 // The records pale, the fractiles of every case over them.
 function idaDrawing(host, d) {
@@ -34,11 +34,11 @@ function idaDrawing(host, d) {
 function fragilityDrawing(host, d) {
   const [level, x] = levelsOf(d), fine = charts.range(1, 201).map((i) => (i / 200) * 1.05 * level.at(-1));
   const normal = (z) => 1 / (1 + Math.exp(-1.5976 * z - 0.070566 * z ** 3)); // within 2e-4
-  const columns = [...charts.group(d.fragility, (c) => `${c.of} ${c.relation} ${c.bound}`)].map(([title, list]) => [{ title, x, y: { label: "probability", domain: [0, 1] }, marks: list.flatMap(({ scene, median, beta, exceeded, simulations }) => {
-    const { colour, symbol } = SCENES[scene];
+  const columns = [...charts.group(d.fragility, (c) => [c.of, c.relation, c.bound].join(" "))].map(([title, list]) => [{ title, x, y: { label: "probability", domain: [0, 1] }, marks: list.flatMap(({ scene, median, beta, exceeded, simulations }) => {
+    const { colour, symbol } = SCENES[scene] ?? { colour: BLUE };
     return [{ mark: "dot", x: level, y: exceeded.map((n, l) => n / simulations[l]), fill: colour, r: 3, symbol }, curve(fine, fine.map((v) => (median ? normal(Math.log(v / median) / beta) : NaN)), colour, 2.5)];
   }) }]);
-  panels(host, { height: 380, columns, names: [...new Set(d.fragility.map((c) => c.scene))].map((key) => [SCENES[key].words, SCENES[key].colour, SCENES[key].mark]) });
+  panels(host, { height: 380, columns, names: [...new Set(d.fragility.flatMap((c) => SCENES[c.scene] ?? []))].map(({ words, colour, mark }) => [words, colour, mark]) });
 }
 
 // Of a long history the largest sample of each bin.
