@@ -101,7 +101,7 @@ static int holds(int at, int *is_over)
         char command[512];
         rest = text + 5;
         name = part(&rest);
-        snprintf(command, sizeof command, "mkdir -p $(dirname '%s/%s')", place.folder, name);
+        snprintf(command, sizeof command, "mkdir -p \"$(dirname '%s/%s')\"", place.folder, name);
         right = ran(at, NULL, 0, NULL, command);
         write_in_place(name, unescape(rest));
     } else if (strncmp(text, "run ", 4) == 0) {

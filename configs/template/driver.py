@@ -45,8 +45,8 @@ def number(pattern, text, where):
     return float(found[-1])
 
 
-def evaluate(o, template, x):
-    with tempfile.TemporaryDirectory(prefix="imtet-") as folder:
+def evaluate(o, template, x, base):
+    with tempfile.TemporaryDirectory(dir=base) as folder:
         with open(os.path.join(folder, os.path.basename(o.template).removesuffix(".tpl")), "w") as f:
             f.write(fill(template, x, o.template))
         run = subprocess.run(o.run, shell=True, cwd=folder, env={**os.environ, "START": os.getcwd()}, text=True, errors="replace",
@@ -69,10 +69,13 @@ def main():
     o = options()
     with open(o.template) as f:
         template = f.read()
+    base = tempfile.mkdtemp(prefix="imtet-")
+    # Removes it whatever ends this process, in a session of its own: where a design is too late imtet kills the worker.
+    subprocess.Popen(["sh", "-c", 'cat; rm -rf "$0"', base], stdin=subprocess.PIPE, start_new_session=True)
     for line in sys.stdin:
         request = json.loads(line)
         try:
-            answer = evaluate(o, template, request["x"])
+            answer = evaluate(o, template, request["x"], base)
         except ValueError as e:
             answer = {"error": str(e)}
         print(json.dumps({"id": request["id"], **answer}), flush=True)

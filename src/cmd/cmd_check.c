@@ -398,6 +398,7 @@ static void open_study(Check *c, const Settings *s, CheckedScene *p)
         json_put(c->out, "problem=%p", json_of("variables=%ld objectives=%ld", schema->n_var, schema->n_obj));
         if (s->problem.kind == PROBLEM_EXTERNAL && json_array_size(c->faults) == 0)
             describe_worker(c, s, adapter);
+        note(c, tables_have_room(schema, &e), "store", &e); /* with the constraint values of its answer */
     }
     adapter_close(adapter);
 }

@@ -1,4 +1,5 @@
 #include <errno.h>
+#include <fcntl.h>
 #include <limits.h>
 #include <stdarg.h>
 #include <sys/stat.h>
@@ -174,7 +175,7 @@ static Status begin(const Args *args, Err *err)
         return misused(err, "%.60s...: the path is too long", args->operand);
     if (mkdir(args->operand, 0777) != 0 && errno != EEXIST)
         return fail(err, STATUS_IO, "%s: %s", args->operand, strerror(errno));
-    if (access(path, F_OK) == 0)
+    if (faccessat(AT_FDCWD, path, F_OK, AT_SYMLINK_NOFOLLOW) == 0)
         return misused(err, "%s: exists already; name another folder", path);
     char *folder = realpath(args->operand, NULL), out[PATH_MAX];
     if (!folder)

@@ -79,7 +79,7 @@ static Status explain(const char *path, int code, const char *said, Err *err)
     case SQLITE_CANTOPEN:
         return fail(err, STATUS_IO, "%s: cannot be opened: %s", path, said);
     default:
-        return fail(err, STATUS_IO, "%s: cannot be read or written: %s", path, said);
+        return fail(err, STATUS_IO, "%s: cannot be read or written: %s (%s)", path, said, strerror(errno));
     }
 }
 

@@ -1,5 +1,10 @@
 #include "store/notes.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include "base/csv.h"
 #include "store/folder.h"
 #include "store/output.h"
 
@@ -7,12 +12,17 @@ static const char NOTES[] = "notes.json";
 
 Status notes_read(const char *folder, json_t **notes, Err *err)
 {
-    char path[PATH_MAX];
+    char path[PATH_MAX], *bytes = NULL;
     const char *key;
+    size_t n = 2;
     json_t *text;
     json_error_t error = {0};
+    *notes = NULL;
     folder_path(folder, NOTES, path);
-    *notes = folder_has(folder, NOTES) ? json_load_file(path, JSON_REJECT_DUPLICATES, &error) : json_object();
+    if (folder_has(folder, NOTES))
+        TRY(file_read(path, FILE_LARGEST, &bytes, &n, err));
+    *notes = json_loadb(bytes ? bytes : "{}", n, JSON_REJECT_DUPLICATES, &error);
+    free(bytes);
     int are_notes = json_is_object(*notes);
     json_object_foreach(*notes, key, text) are_notes &= json_is_string(text);
     if (are_notes)
@@ -45,7 +55,7 @@ Status notes_of_run(const Run *run, json_t **notes, Err *err)
     return status;
 }
 
-Status notes_put(const char *folder, long id, const char *text, Err *err)
+static Status put(const char *folder, long id, const char *text, Err *err)
 {
     char path[PATH_MAX], key[24];
     json_t *notes;
@@ -61,10 +71,20 @@ Status notes_put(const char *folder, long id, const char *text, Err *err)
         json_object_del(notes, key);
     Status status = output_open_inside(&o, path, err);
     if (status == STATUS_OK) {
-        json_dumpf(notes, o.stream, JSON_INDENT(1) | JSON_SORT_KEYS); /* a failed write is seen on closing */
+        const int is_whole = json_dumpf(notes, o.stream, JSON_INDENT(1) | JSON_SORT_KEYS) == 0;
         fputc('\n', o.stream);
-        status = output_close(&o, err);
+        status = output_end(&o, is_whole || ferror(o.stream) ? STATUS_OK : fail_memory(err, 1, "notes"), err);
     }
     json_decref(notes);
+    return status;
+}
+
+/* The folder is locked meanwhile, for other servers of the run. */
+Status notes_put(const char *folder, long id, const char *text, Err *err)
+{
+    const int lock = open(folder, O_RDONLY | O_CLOEXEC);
+    flock(lock, LOCK_EX);
+    const Status status = put(folder, id, text, err);
+    close(lock);
     return status;
 }

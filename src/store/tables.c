@@ -137,21 +137,6 @@ static double *number_at(const Evaluation *e, NumberPlace place)
     return *(double *const *)(const void *)((const char *)e + place.array) + place.i;
 }
 
-Status tables_have_room(const Schema *s, Err *err)
-{
-    Numbers list[N_NUMBERS];
-    size_t others = N_OF(EVALUATION) + 1;
-    numbers_of(ROWS_EVALUATION, s, list);
-    for (size_t k = 1; k < N_NUMBERS; k++) /* behind the variables */
-        others += list[k].n;
-    return s->n_var + others <= COLUMNS_MAX
-               ? STATUS_OK
-               : bad_data(err,
-                          "problem.variables = %zu: a run has room for %zu variables beside "
-                          "%zu objectives (SQLite: %d columns)",
-                          s->n_var, COLUMNS_MAX - others, s->n_obj, COLUMNS_MAX);
-}
-
 /* -- the text of the tables ---------------------------------------------------------------------------------------- */
 
 /* The statements that make all tables, to be freed. Names become identifiers of SQL: in double quotes, doubled inside.
@@ -182,6 +167,33 @@ static Status tables_text(const Schema *s, char **text, Err *err)
         fputs(");", f);
     }
     return text_close(f) == 0 ? STATUS_OK : fail_memory(err, 1, "the names of the columns");
+}
+
+/* The tables are made once in memory: SQLite knows which names it takes for one. */
+Status tables_have_room(const Schema *s, Err *err)
+{
+    Numbers list[N_NUMBERS];
+    size_t others = N_OF(EVALUATION) + 1;
+    sqlite3 *db = NULL;
+    char *text;
+    Status status = STATUS_OK;
+    numbers_of(ROWS_EVALUATION, s, list);
+    for (size_t k = 1; k < N_NUMBERS; k++) /* behind the variables */
+        others += list[k].n;
+    if (s->n_var + others > COLUMNS_MAX)
+        return bad_data(err,
+                        "problem.variables = %zu: a run has room for %zu variables beside "
+                        "%zu objectives (SQLite: %d columns)",
+                        s->n_var, COLUMNS_MAX - others, s->n_obj, COLUMNS_MAX);
+    TRY(tables_text(s, &text, err));
+    if (sqlite3_open(":memory:", &db) != SQLITE_OK || sqlite3_exec(db, text, NULL, NULL, NULL) != SQLITE_OK)
+        status = bad_data(err,
+                          "problem.variable_names: or problem.objective_names: %s; a run has columns of its own (id, "
+                          "kind, g_1 ...), and E is e there",
+                          sqlite3_errmsg(db));
+    sqlite3_close(db);
+    free(text);
+    return status;
 }
 
 /* -- what a file has of them --------------------------------------------------------------------------------------- */

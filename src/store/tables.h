@@ -24,8 +24,8 @@
 #include "store/database.h"
 #include "store/run.h"
 
-/* Whether SQLite has columns for all of it (2,000 in a table): STATUS_BAD_DATA with the number of variables that the
- * other columns leave. */
+/* Whether SQLite has columns for all of it (2,000 in a table), of different names: STATUS_BAD_DATA with the number of
+ * variables that the other columns leave, or the name. */
 Status tables_have_room(const Schema *schema, Err *err);
 
 /* The database of a new run at `path`. Made beside its place and renamed: it is there whole or not at all. */
