@@ -259,7 +259,6 @@ TEST(it_says_how_far_it_is_and_why_it_ends)
     imtet_search_free(&s);
 }
 
-/* Six designs, ten on a list and a choice, with six left where nothing but chance would find them. */
 TEST(a_search_ends_when_every_design_of_its_space_is_known)
 {
     static const struct {

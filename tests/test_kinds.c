@@ -33,27 +33,6 @@ TEST(all_eleven_points_of_a_front_are_found_among_1815_designs)
         assert_int_equal(found[k], 1);
 }
 
-TEST(a_choice_that_varies_becomes_any_other_word_with_equal_chance)
-{
-    enum { WORDS = 5, DRAWS = 4000 };
-    static const double upper[] = {WORDS - 1};
-    static const VariableKind kind[] = {VARIABLE_CHOICE};
-    const Problem p = {.n_var = 1, .lower = (double[]){0}, .upper = (double *)upper, .kind = (VariableKind *)kind};
-    Random r = random_stream(1, RANDOM_TEST, 0, 0);
-    for (int word = 0; word < WORDS; word++) {
-        const double before = word, share = 1.0 / (WORDS - 1), sd = sqrt(share * (1 - share) * DRAWS);
-        int drawn[WORDS] = {0};
-        for (int i = 0; i < DRAWS; i++) {
-            double x = before + 0.3;
-            mutate_discrete(&r, &p, &before, &x);
-            assert_true(x == floor(x) && x >= 0 && x < WORDS && x != before);
-            drawn[(int)x]++;
-        }
-        for (int other = 0; other < WORDS; other++)
-            assert_less(fabs(drawn[other] - (other == word ? 0 : share * DRAWS)), 5 * sd);
-    }
-}
-
 /* From any place, of a box whose ends are 0 and 12 and of values that are sold every 2.5, 20 in all. */
 TEST(a_step_to_another_value_goes_to_a_neighbour_on_either_side_and_changes_nothing_else)
 {
@@ -96,14 +75,6 @@ TEST(no_design_is_simulated_twice_and_all_are_on_their_numbers_and_words)
     }
     assert_int_equal(run.table.n, 200);
     run_free(&run);
-}
-
-/* With fewer designs than simulations every one is simulated, and the search ends. */
-TEST(a_space_smaller_than_the_budget_is_searched_whole)
-{
-    write_in_place("tiny.ini", MIXED(2, "int, choice:a|b") "[search]\ninitial = 8\npopulation = 8\nmax_evals = 60\n");
-    free(output_of("optimize @/tiny.ini --out @/tiny"));
-    assert_int_equal(finished_in("tiny"), 22);
 }
 
 TEST(samples_give_every_number_and_word_the_same_share_and_logarithms_every_decade)
