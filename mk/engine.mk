@@ -8,7 +8,7 @@ WASM_FLAGS.building_read := -Dbuilding_read=building_of_files
 COMMA := ,
 WASM_KERNELS := kernel_base plain_base
 # What reads files, draws random motions or needs LAPACK has its stand-in in src/wasm; the linker leaves out what nobody calls.
-WASM_SRC := $(wildcard src/wasm/*.c src/sim/*.c) src/sim/fast/fast.c \
+WASM_SRC := $(wildcard src/wasm/*.c src/sim/*.c) src/sim/fast/fast.c src/report/history.c \
             $(filter-out %/opensees.c %/sheets.c,$(wildcard src/scene/*.c)) $(wildcard src/settings/*.c) \
             $(filter-out %/linalg.c %/text.c %/json.c %/whole_file.c,$(wildcard src/base/*.c)) \
             $(filter-out %/builtin.c %/synthetic.c,$(wildcard src/motion/*.c)) \
@@ -33,6 +33,6 @@ $(WASM_KERNELS:%=build/wasm/%.o): build/wasm/%.o: src/sim/fast/kernel.c
 
 build/wasm/engine.wasm: $(WASM_OBJ)
 	@echo '  LD  $@'
-	$(Q)clang --target=wasm32-wasi -mexec-model=reactor -Wl,--strip-all,-z,stack-size=4194304 $(addprefix -Wl$(COMMA)--export=engine_,answer room open design ground run whole) $^ -o $@
+	$(Q)clang --target=wasm32-wasi -mexec-model=reactor -Wl,--strip-all,-z,stack-size=4194304 $(addprefix -Wl$(COMMA)--export=engine_,answer room open design ground run histories) $^ -o $@
 
 -include $(WASM_OBJ:.o=.d)

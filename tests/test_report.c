@@ -54,37 +54,6 @@ static int tear_down(void **state)
 
 /* ---- what is computed ------------------------------------------------------------------------------------------ */
 
-TEST(the_wavelet_of_a_steady_swing_is_its_amplitude_at_its_frequency)
-{
-    enum { N = 4000 };
-    const double dt = 0.02, f[] = {1.25, 2.5, 0.625}, t[] = {30, 40, 50}, a = 0.37;
-    double u[N], amplitude[9];
-    for (int k = 0; k < N; k++)
-        u[k] = a * sin(2 * M_PI * 1.25 * k * dt + 0.4);
-    wavelet(N, dt, u, 3, f, 3, t, amplitude);
-    for (int k = 0; k < 3; k++) {
-        assert_close(amplitude[k], a, 1e-3);
-        assert_true(amplitude[3 + k] < 0.02 * a && amplitude[6 + k] < 0.02 * a);
-    }
-}
-
-/* A Gauss-shaped burst of width d at frequency f: |W| = a s/sqrt(s^2 + d^2) ... over its own peak 1/sqrt(1 + (s/d)^2).
- */
-TEST(the_wavelet_of_a_burst_is_largest_at_its_instant_as_a_product_of_gaussians_says)
-{
-    enum { N = 6000 };
-    const double dt = 0.01, f = 2, at = 30, d = 0.8, s = WAVELET_CYCLES / (2 * M_PI * f);
-    const double t[] = {at, at + 1, at - 1};
-    double u[N], amplitude[3];
-    for (int k = 0; k < N; k++)
-        u[k] = exp(-0.5 * pow((k * dt - at) / d, 2)) * cos(2 * M_PI * f * (k * dt - at));
-    wavelet(N, dt, u, 1, &f, 3, t, amplitude);
-    const double peak = d / sqrt(d * d + s * s), shape = exp(-0.5 / (d * d + s * s));
-    assert_close(amplitude[0], peak, 1e-3);
-    assert_close(amplitude[1], peak * shape, 1e-3);
-    assert_close(amplitude[2], peak * shape, 1e-3);
-}
-
 /* 200 designs of three variables in the unit cube and f = a x1 + b x2 + c x1 x2. */
 static Importance importance_of_plane(double a, double b, double c)
 {
@@ -119,38 +88,44 @@ TEST(importance_is_the_share_of_the_variance_that_a_variable_has_a_part_in)
     importance_free(&product);
 }
 
+static double energy(const Track *h, size_t i, EnergyKind k)
+{
+    return track_at(h, i, h->width - N_ENERGIES + k);
+}
+
 TEST(energies_add_up_to_the_input_at_every_instant_and_end_as_the_result_says)
 {
     Scenario w;
-    History h;
+    Track h;
     const SceneOptions options = settings_scene(tower.settings);
     CHECK_OK(scenario_of(&w, &options, &tower.settings->motion, &err), &err);
     for (int s = 0; s < 2; s++) {
         const SceneKind kind = s ? SCENE_NO_CORE : SCENE_IMPACT;
         const SimResult *result = &report.detail.result[kind];
-        CHECK_OK(history_run(&w, kind, run_x(&tower, report.chosen), 5, &h, &err), &err);
+        CHECK_OK(history_run(&w, kind, run_x(&tower, report.chosen), &h, &err), &err);
         assert_less(200, h.n);
         double most = 0;
         for (size_t i = 0; i < h.n; i++) {
             double sum = 0;
             for (int k = 0; k < ENERGY_INPUT; k++)
-                sum += h.energy[k][i];
-            assert_at_most(fabs(sum - h.energy[ENERGY_INPUT][i]), 1e-9 * result->input_energy_j);
-            most = fmax(most, fabs(h.u[i]));
+                sum += energy(&h, i, (EnergyKind)k);
+            assert_at_most(fabs(sum - energy(&h, i, ENERGY_INPUT)), 1e-9 * result->input_energy_j);
+            most = fmax(most, fabs(track_at(&h, i, HISTORY_U + 5)));
         }
         const size_t end = h.n - 1; /* 4.505 s are no whole number of samples: the run goes on for a part */
-        assert_close(h.energy[ENERGY_INPUT][end], result->input_energy_j, 0.02);
-        assert_close(h.energy[ENERGY_DAMPED_BUILDING][end], result->damped_building_j, 0.02);
+        assert_close(energy(&h, end, ENERGY_INPUT), result->input_energy_j, 0.02);
+        assert_close(energy(&h, end, ENERGY_DAMPED_BUILDING), result->damped_building_j, 0.02);
         /* What is closed or bent takes and gives during the part of a sample that is left; strain is that of K u. */
-        const double kept = h.energy[ENERGY_KINETIC][end] + h.energy[ENERGY_STRAIN][end] + h.energy[ENERGY_CORE][end];
-        assert_at_most(fabs(h.energy[ENERGY_CONTACTS][end] + kept - result->kinetic_strain_j - result->contact_loss_j -
-                            result->contact_stored_j - result->clamp_j - result->hysteresis_j),
+        const double kept =
+            energy(&h, end, ENERGY_KINETIC) + energy(&h, end, ENERGY_STRAIN) + energy(&h, end, ENERGY_CORE);
+        assert_at_most(fabs(energy(&h, end, ENERGY_CONTACTS) + kept - result->kinetic_strain_j -
+                            result->contact_loss_j - result->contact_stored_j - result->clamp_j - result->hysteresis_j),
                        0.01 * result->input_energy_j);
         if (kind == SCENE_NO_CORE)
-            assert_true(result->contact_loss_j == 0 && h.energy[ENERGY_CORE][end] == 0);
+            assert_true(result->contact_loss_j == 0 && energy(&h, end, ENERGY_CORE) == 0);
         assert_at_most(most, result->peak_displacement_m[5] * (1 + 1e-9));
         assert_close(most, result->peak_displacement_m[5], 0.02);
-        history_free(&h);
+        track_free(&h);
     }
     scenario_close(&w);
 }
@@ -361,7 +336,7 @@ TEST(the_band_of_a_design_reaches_from_the_mildest_to_the_worst_of_its_records)
     const DetailOptions options = {.without_devices = 1, .other = &s};
     CHECK_OK(detail_make(&s, (int)tower.schema.n_var, x, &options, &several, &err), &err);
     json_t *page = detail_json(&several, &tower.schema.order),
-           *ends = json_object_get(json_object_get(page, "band"), "drift_m");
+           *ends = json_object_get(json_object_get(page, "band"), "peak_drift_m");
     double low = INFINITY, high = 0, j1[3], mean, sd;
     for (int i = 0; i < 3; i++) {
         CHECK_OK(settings_put(&s, "motion.records", "none", &err), &err);

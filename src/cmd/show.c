@@ -6,29 +6,13 @@
 #include "base/hypervolume.h"
 #include "base/text.h"
 #include "motion/suite.h"
+#include "report/report_json.h"
 #include "report/verdict.h"
 #include "report/words.h"
 #include "store/output.h"
 #include "study/record_paths.h"
 
 /* ---- results ----------------------------------------------------------------------------------------------------- */
-
-/* One value, a list, or [u > v, u < v] of lists. */
-static json_t *json_part(const ResultPart *part, size_t rows, size_t n, const double of[])
-{
-    switch (part->shape) {
-    case PART_NUMBER:
-        return json_number(*of);
-    case PART_LONG:
-    case PART_INT:
-    case PART_STOREY:
-        return json_integer((json_int_t)*of);
-    case PART_FLAG:
-        return json_boolean(*of != 0);
-    default:
-        return rows == SIDES ? json_pair(n, of, of + n) : json_numbers(n, of);
-    }
-}
 
 static json_t *json_damage(const SimResult *r)
 {
@@ -51,13 +35,7 @@ json_t *json_result(const MeasureOrder *order, SceneKind kind, const SimResult *
     put_measures(o, order, "", measured(r).value, NULL, NULL);
     json_put(o, "beyond_contact_law=%c peak_filtered_g=%p", beyond_contact_law(r),
              r->filtered_known ? json_numbers(r->n_floors, r->peak_filtered_g) : json_null());
-    for (const ResultPart *part = RESULT_PARTS; part->name; part++) {
-        double values[SIDES * FLOORS_MAX];
-        size_t rows;
-        const size_t n = result_part(r, SCENES[kind].has, part, values, &rows);
-        if (n > 0)
-            json_object_set_new(o, part->name, json_part(part, rows, n, values));
-    }
+    put_parts(o, kind, r);
     return json_put(o, "damage=%p", r->outcome == RUN_OK ? json_damage(r) : NULL);
 }
 

@@ -50,6 +50,7 @@ Outcome outcome_of_word(const char *word); /* OUTCOME_COUNT: no outcome has that
     X(REPEAT, "repeat")         /* further replicates of a design that is there */                                     \
     X(SCREENED, "screened")     /* the cheap level alone (evaluate/problem.h): never on the front */                   \
     X(FINISHED, "finished")     /* screened before: now all of its simulations */                                      \
+    X(KEPT, "kept")             /* from outside the search, of a page (serve/serve.h) */                               \
     X(UNFINISHED, "unfinished") /* its generation is not finished: not known yet */
 
 typedef enum {
@@ -58,6 +59,12 @@ typedef enum {
 #undef X
         KIND_COUNT
 } EvaluationKind;
+
+/* From outside the search, which never sees it. */
+static inline int kind_is_outside(EvaluationKind kind)
+{
+    return kind == KIND_POLISHED || kind == KIND_KEPT;
+}
 
 const char *kind_word(EvaluationKind kind);
 EvaluationKind kind_of_word(const char *word); /* KIND_UNFINISHED: no other kind has that word */

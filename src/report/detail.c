@@ -6,8 +6,6 @@
 #include "report/verdict.h"
 #include "settings/options.h"
 
-static const double QUIET = 0.02; /* of the peak displacement */
-
 /* Under the first record; the baselines under all of them too. */
 static Status simulate(const Problem *p, const double x[], int with_devices, Detail *d, Err *err)
 {
@@ -67,73 +65,6 @@ static void describe(const Scenario *w, const double x[], Detail *d)
     d->duration_s = given > 0 ? given : motion_duration(&w->motion);
 }
 
-static double amplitude_at(size_t n, double dt, const double u[], double f, double t)
-{
-    const double s = WAVELET_CYCLES / (2 * M_PI * f);
-    const long first = (long)ceil((t - 4 * s) / dt), last = (long)floor((t + 4 * s) / dt);
-    double re = 0, im = 0, weight = 0;
-    for (long k = first; k <= last; k++) {
-        const double since = (double)k * dt - t, g = exp(-0.5 * (since / s) * (since / s));
-        weight += g;
-        if (k < 0 || (size_t)k >= n)
-            continue;
-        re += g * u[k] * cos(2 * M_PI * f * since);
-        im -= g * u[k] * sin(2 * M_PI * f * since);
-    }
-    return weight > 0 ? 2 * hypot(re, im) / weight : 0;
-}
-
-void wavelet(size_t n, double dt, const double u[], size_t n_f, const double f[], size_t n_t, const double t[],
-             double amplitude[])
-{
-#pragma omp parallel for schedule(dynamic, 1)
-    for (size_t i = 0; i < n_f; i++)
-        for (size_t k = 0; k < n_t; k++)
-            amplitude[i * n_t + k] = amplitude_at(n, dt, u, f[i], t[k]);
-}
-
-/* From half the first frequency of the building to beyond its tenth, as far as the samples see. */
-static void take_spectrum(const Detail *d, const History *h, Spectrogram *s)
-{
-    const int tenth = d->n_floors < 10 ? d->n_floors - 1 : 9;
-    const double lowest = 0.5 * d->building_hz[0], highest = fmin(1.3 * d->building_hz[tenth], 0.45 / h->dt_s);
-    for (size_t i = 0; i < SPECTRUM_FREQUENCIES; i++)
-        s->f[i] = lowest * pow(highest / lowest, (double)i / (SPECTRUM_FREQUENCIES - 1));
-    for (size_t k = 0; k < SPECTRUM_TIMES; k++)
-        s->t[k] = h->t[h->n - 1] * (double)k / (SPECTRUM_TIMES - 1);
-    wavelet(h->n, h->dt_s, h->u, SPECTRUM_FREQUENCIES, s->f, SPECTRUM_TIMES, s->t, s->amplitude);
-}
-
-/* Records end long after the building has come to rest: both histories are cut where nothing is to be seen any more. */
-static void cut_quiet_end(Detail *d)
-{
-    double most = 0;
-    size_t n = 2;
-    for (int i = 0; i < 2; i++)
-        for (size_t k = 0; k < d->history[i].n; k++)
-            most = fmax(most, fabs(d->history[i].u[k]));
-    for (int i = 0; i < 2; i++)
-        for (size_t k = 0; k < d->history[i].n; k++)
-            if (fabs(d->history[i].u[k]) > QUIET * most && k + 1 > n)
-                n = k + 1;
-    for (int i = 0; i < 2; i++)
-        if (d->history[i].n > n)
-            d->history[i].n = n;
-}
-
-static Status take_histories(const Scenario *w, const double x[], Detail *d, Err *err)
-{
-    static const SceneKind SHOWN[2] = {SCENE_IMPACT, SCENE_NO_CORE};
-    TRY_ROOM(d->spectrum, 2, "spectra", err);
-    for (int i = 0; i < 2; i++)
-        TRY(history_run(w, SHOWN[i], x, d->floor, &d->history[i], err));
-    cut_quiet_end(d);
-    for (int i = 0; i < 2; i++)
-        if (d->history[i].n > 1)
-            take_spectrum(d, &d->history[i], &d->spectrum[i]);
-    return STATUS_OK;
-}
-
 static Status take_here(const Problem *p, const double x[], const DetailOptions *options, Detail *d, Err *err)
 {
     const Scenario *w = tower_record(tower_of(p), 0);
@@ -144,7 +75,7 @@ static Status take_here(const Problem *p, const double x[], const DetailOptions 
     memcpy(d->core_hz, modes.core_hz, sizeof d->core_hz);
     TRY(simulate_records(p, x, d, err));
     TRY(simulate(p, x, !options->without_devices, d, err));
-    return take_histories(w, x, d, err);
+    return histories_run(w, x, d->floor, d->history, err);
 }
 
 static Status take_elsewhere(const Settings *other, const char *record, const double x[], Elsewhere *e, Err *err)
@@ -216,8 +147,7 @@ Status detail_make(const Settings *s, int n_var, const double x[], const DetailO
 void detail_free(Detail *d)
 {
     for (int i = 0; i < 2; i++)
-        history_free(&d->history[i]);
-    free(d->spectrum);
+        track_free(&d->history[i]);
     free(d->elsewhere);
     free(d->by_record);
     free(d->ladder);

@@ -11,14 +11,6 @@
 
 typedef struct Settings Settings;
 
-enum { SPECTRUM_FREQUENCIES = 72, SPECTRUM_TIMES = 320 };
-
-/* Amplitude of the floor's displacement by frequency and time (wavelet). */
-typedef struct {
-    double f[SPECTRUM_FREQUENCIES], t[SPECTRUM_TIMES];       /* [Hz] equidistant in their logarithm, [s] */
-    double amplitude[SPECTRUM_FREQUENCIES * SPECTRUM_TIMES]; /* (f, t) [m] */
-} Spectrogram;
-
 typedef struct {
     char record[128];
     double pga_g, scale, stretch;
@@ -47,8 +39,7 @@ typedef struct {
     Err no_ladder;
     char *verdict; /* report/verdict.h; NULL: not asked for, or not to be had */
     /* until the floor's displacement stays below 2 % of its peak */
-    History history[2];    /* SCENE_IMPACT, SCENE_NO_CORE */
-    Spectrogram *spectrum; /* (2) the same */
+    Track history[2]; /* SCENE_IMPACT, SCENE_NO_CORE */
     size_t n_elsewhere;
     Elsewhere *elsewhere; /* (n_elsewhere) */
 } Detail;
@@ -68,16 +59,3 @@ typedef struct {
 /* s: settings of the run; x (n_var) the design. */
 Status detail_make(const Settings *s, int n_var, const double x[], const DetailOptions *options, Detail *out, Err *err);
 void detail_free(Detail *d);
-
-/* Morlet amplitude spectrum of a signal over time.
- *
- *   A(f, t) = |2 sum_k g_k u_k exp(-2 pi i f (t_k - t))| / sum_k g_k,   g_k = exp(-(t_k - t)^2 / (2 s^2)),
- *   s = WAVELET_CYCLES / (2 pi f),   |t_k - t| <= 4 s
- *
- * Morlet's wavelet, scaled so that a steady swing of amplitude a at frequency f shows as a. Before its first and after
- * its last sample the signal is taken as zero. Threads  no state */
-static const double WAVELET_CYCLES = 6;
-
-/* u (n) every dt [s]; f (n_f) [Hz] below 1/(2 dt); t (n_t) [s]; amplitude (n_f, n_t) in the unit of u. */
-void wavelet(size_t n, double dt, const double u[], size_t n_f, const double f[], size_t n_t, const double t[],
-             double amplitude[]);

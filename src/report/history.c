@@ -1,40 +1,37 @@
 #include "report/history.h"
 
-static Status take_columns(const Track *t, size_t floor, History *h, Err *err)
-{
-    double *store;
-    TRY_ROOM(store, t->n * (2 + N_ENERGIES) + 1, "samples", err);
-    h->t = store;
-    h->u = store + t->n;
-    h->n = t->outcome == RUN_OK ? t->n : 0;
-    for (size_t k = 0; k < N_ENERGIES; k++)
-        h->energy[k] = store + (2 + k) * t->n;
-    for (size_t i = 0; i < h->n; i++) {
-        h->t[i] = track_at(t, i, 0);
-        h->u[i] = track_at(t, i, 2 + floor);
-        for (size_t k = 0; k < N_ENERGIES; k++)
-            h->energy[k][i] = track_at(t, i, t->width - N_ENERGIES + k);
-    }
-    return STATUS_OK;
-}
+static const double QUIET = 0.02; /* of the peak displacement */
 
-Status history_run(const Scenario *scenario, SceneKind kind, const double x[], int floor, History *out, Err *err)
+const char *const ENERGY_KEYS[N_ENERGIES] = {"kinetic",  "strain", "damped_building", "core", "damped_core",
+                                             "contacts", "input"};
+
+Status history_run(const Scenario *scenario, SceneKind kind, const double x[], Track *out, Err *err)
 {
     Scene *scene;
-    Track track = {0};
     SceneOptions s = scenario->options;
     s.sim.engine = ENGINE_FAST; /* the others have no samples */
-    *out = (History){.dt_s = scenario->motion.dt_s};
     TRY(scene_create(&scene, &s, &scenario->motion, err));
-    Status status = track_run(scene, kind, x, &(LinearDevice){0}, 0, &track, err);
-    THEN(status, take_columns(&track, (size_t)floor, out, err));
-    track_free(&track);
+    const Status status = track_run(scene, kind, x, &(LinearDevice){0}, 0, out, err);
     scene_free(scene);
+    out->n = out->outcome == RUN_OK ? out->n : 0;
     return status;
 }
 
-void history_free(History *h)
+/* Records end long after the building has come to rest: both histories are cut where nothing is to be seen any more. */
+Status histories_run(const Scenario *scenario, const double x[], int floor, Track out[2], Err *err)
 {
-    free(h->t);
-    memset(h, 0, sizeof *h);
+    double most = 0;
+    size_t n = 2;
+    TRY(history_run(scenario, SCENE_IMPACT, x, &out[0], err));
+    TRY(history_run(scenario, SCENE_NO_CORE, x, &out[1], err));
+    for (int i = 0; i < 2; i++)
+        for (size_t k = 0; k < out[i].n; k++)
+            most = fmax(most, fabs(track_at(&out[i], k, HISTORY_U + floor)));
+    for (int i = 0; i < 2; i++)
+        for (size_t k = n; k < out[i].n; k++)
+            if (fabs(track_at(&out[i], k, HISTORY_U + floor)) > QUIET * most)
+                n = k + 1;
+    for (int i = 0; i < 2; i++)
+        out[i].n = MIN_OF(out[i].n, n);
+    return STATUS_OK;
 }

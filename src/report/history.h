@@ -1,21 +1,18 @@
-/* report/history.h -- one response over time, as the engine fast goes through it: a floor's displacement and where
- * the input energy has gone so far.
+/* report/history.h -- the response over time of a design and of the building without core, as the engine fast goes
+ * through them: rows of sim/samples.h at every sample of the motion, until both displacements of a floor stay below 2 %
+ * of their peak.
  *
- * sim/samples.h says which energies.
- * Instants   every sample of the motion, from t = 0
- * Ownership  history_run allocates, history_free releases (an empty History is fine) */
+ * Ownership  for track_free, also after an error */
 #pragma once
 
 #include "evaluate/scenario.h"
 #include "sim/samples.h"
 
-typedef struct {
-    size_t n;
-    double dt_s;
-    double *t, *u;              /* (n) [s], [m] of the floor relative to the ground */
-    double *energy[N_ENERGIES]; /* (n) [J] */
-} History;
+/* Of a history a page has at most so many points, and these energies. HISTORY_U: column of the first floor's
+ * displacement. */
+enum { HISTORY_POINTS = 3000, HISTORY_U = 2 };
+extern const char *const ENERGY_KEYS[N_ENERGIES];
 
-/* floor: from 0. x as for sim_run. A run that does not finish gives an empty History. */
-Status history_run(const Scenario *scenario, SceneKind kind, const double x[], int floor, History *out, Err *err);
-void history_free(History *h);
+/* floor: from 0. x as for sim_run. A run that does not finish has no rows. */
+Status history_run(const Scenario *scenario, SceneKind kind, const double x[], Track *out, Err *err);
+Status histories_run(const Scenario *scenario, const double x[], int floor, Track out[2], Err *err);

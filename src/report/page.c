@@ -1,4 +1,6 @@
 
+#include <float.h>
+
 #include "base/text.h"
 #include "report/pictures.h"
 #include "report/report_json.h"
@@ -19,7 +21,7 @@ static void take_wanted(const Run *run, const size_t kept[2], size_t rows[])
 {
     const size_t n = run->n_front, *front = run->front;
     for (size_t i = 0; i < n; i++) {
-        const int is_polished = run->table.row[front[i]].kind == KIND_POLISHED;
+        const int is_polished = kind_is_outside(run->table.row[front[i]].kind);
         rows[i] = is_polished || front[i] == kept[0] || front[i] == kept[1] ? front[i] : NOT_TAKEN;
     }
     for (size_t column = 0; column < run->schema.n_obj + run->schema.n_var; column++) {
@@ -60,9 +62,9 @@ extern const char _binary_build_web_page_html_start[], _binary_build_web_page_ht
 extern const char _binary_build_web_live_html_start[], _binary_build_web_live_html_end[];
 
 /* JSON in which no text can end the script element or begin a comment: < stands only inside strings. */
-static void write_json(json_t *all, FILE *out)
+static void write_json(json_t *all, int digits, FILE *out)
 {
-    char *text = json_dumps(all, JSON_COMPACT | JSON_ENSURE_ASCII | JSON_REAL_PRECISION(6));
+    char *text = json_dumps(all, JSON_COMPACT | JSON_ENSURE_ASCII | JSON_REAL_PRECISION(digits));
     json_decref(all);
     for (const char *p = text; *p; p++)
         if (*p == '<')
@@ -72,10 +74,10 @@ static void write_json(json_t *all, FILE *out)
     free(text);
 }
 
-static void write_part(const char *kind, const char *id, json_t *part, FILE *out)
+static void write_part(const char *id, json_t *part, int digits, FILE *out)
 {
-    fprintf(out, "<script type=\"application/%s\" id=\"%s\">", kind, id);
-    write_json(part, out);
+    fprintf(out, "<script type=\"application/json\" id=\"%s\">", id);
+    write_json(part, digits, out);
     fputs("</script>\n", out);
 }
 
@@ -101,7 +103,9 @@ static Status write_page(json_t *run, const Report *rows, const char *body, int 
     /* A failed write is seen on closing. */
     fwrite(start, 1, (body ? at[PARTS] : at[RUN]) - start, out);
     fputs(body ? body : "", out);
-    write_part("json", "run", run, out);
+    write_part("run", run, 6, out);
+    if (rows)
+        write_part("kept-designs", kept_json(rows), DBL_DECIMAL_DIG, out);
     fputs("<script type=\"text/plain\" id=\"rows\">\n", out);
     const Status status =
         rows ? export_designs(out, rows->run, EXPORT_PAGE, rows->n_shown, rows->shown, err) : STATUS_OK;
@@ -110,7 +114,7 @@ static Status write_page(json_t *run, const Report *rows, const char *body, int 
     if (has_engine)
         fwrite(behind[ENGINE], 1, at[SCENE] - behind[ENGINE], out);
     if (scene)
-        write_part("json", "scene", scene, out);
+        write_part("scene", scene, 6, out);
     fwrite(behind[SCENE], 1, end - behind[SCENE], out);
     return status;
 }

@@ -8,8 +8,6 @@
 #include "settings/settings.h"
 #include "store/provenance.h"
 
-enum { HISTORY_POINTS = 3000 };
-
 /* Every setting of the run. */
 static json_t *json_of_settings(const Settings *s)
 {
@@ -21,48 +19,69 @@ static json_t *json_of_settings(const Settings *s)
 
 /* ---- the chosen design ----------------------------------------------------------------------------------------- */
 
-json_t *result_json(const SimResult *r, const MeasureOrder *order)
+/* One value, a list, or [u > v, u < v] of lists. */
+static json_t *json_of_part(const ResultPart *part, size_t rows, size_t n, const double of[])
 {
-    const size_t n = r->n_floors, n_modes = r->n_modes;
-    if (r->outcome != RUN_OK)
-        return json_of("reason=%s", r->reason);
-    json_t *objectives = json_array();
-    for (int k = 0; k < order->n_obj; k++)
-        json_array_append_new(objectives, json_number(measure_value(r, order->of[k])));
-    json_t *closings = json_array();
-    for (size_t j = 0; j < n; j++)
-        json_array_append_new(closings, json_integer(r->closings[j]));
-    json_t *o =
-        json_of("objectives=%p impacts=%ld closings=%p core_pct=%g input_j=%g contact_pct=%g beyond_law=%c "
-                "displacement_m=%p drift_m=%p acceleration_g=%p modes=%p",
-                objectives, r->impacts, closings, r->edcs_pct, r->input_energy_j,
-                r->input_energy_j > 0 ? 100 * r->contact_loss_j / r->input_energy_j : 0.0, beyond_contact_law(r),
-                json_numbers(n, r->peak_displacement_m), json_numbers(n, r->peak_drift_m),
-                json_numbers(n, r->peak_acceleration_g), json_numbers(n_modes, r->mode_share_pct));
-    return r->yields ? json_put(o, "hysteresis_pct=%g plastic_m=%p residual_m=%p", r->ed_hysteresis_pct,
-                                json_numbers(n, r->plastic_drift_m), json_numbers(n, r->residual_drift_m))
-                     : o;
+    switch (part->shape) {
+    case PART_NUMBER:
+        return json_number(*of);
+    case PART_LONG:
+    case PART_INT:
+    case PART_STOREY:
+        return json_integer((json_int_t)*of);
+    case PART_FLAG:
+        return json_boolean(*of != 0);
+    default:
+        return rows == SIDES ? json_pair(n, of, of + n) : json_numbers(n, of);
+    }
 }
 
-static json_t *json_of_energies(const History *h, size_t step)
+json_t *put_parts(json_t *o, SceneKind kind, const SimResult *r)
 {
-    static const char *const KEYS[N_ENERGIES] = {"kinetic",  "strain", "damped_building", "core", "damped_core",
-                                                 "contacts", "input"};
-    json_t *o = json_object();
-    for (int k = 0; k < N_ENERGIES; k++)
-        json_object_set_new(o, KEYS[k], json_numbers_every(step, h->n, h->energy[k]));
+    for (const ResultPart *part = RESULT_PARTS; part->name; part++) {
+        double values[SIDES * FLOORS_MAX];
+        size_t rows;
+        const size_t n = result_part(r, SCENES[kind].has, part, values, &rows);
+        if (n > 0)
+            json_object_set_new(o, part->name, json_of_part(part, rows, n, values));
+    }
     return o;
 }
 
-static json_t *json_of_history(const History *h, const Spectrogram *s)
+json_t *result_json(SceneKind kind, const SimResult *r, const MeasureOrder *order)
 {
-    const size_t step = h->n / HISTORY_POINTS + 1;
-    if (h->n < 2)
+    if (r->outcome != RUN_OK)
+        return json_of("reason=%s", r->reason);
+    double values[FLOORS_MAX + N_MEASURES];
+    for (int k = 0; k < order->n_obj; k++)
+        values[k] = measure_value(r, order->of[k]);
+    json_t *o =
+        json_of("objectives=%p beyond_law=%c", json_numbers((size_t)order->n_obj, values), beyond_contact_law(r));
+    for (int j = 0; j < r->n_floors; j++)
+        values[j] = (double)r->closings[j];
+    json_put(o, "closings=%p", json_numbers((size_t)r->n_floors, values));
+    for (int k = 0; k < MEASURES_LISTED; k++)
+        json_object_set_new(o, measure(k)->name, json_number(measure_value(r, k)));
+    put_parts(o, kind, r);
+    json_object_del(o, "seconds"); /* of the clock: the same run has the same page */
+    return o;
+}
+
+/* Column k of every so many rows. */
+static json_t *json_of_column(const Track *t, size_t k)
+{
+    const size_t step = t->n / HISTORY_POINTS + 1;
+    return json_numbers_every(step * t->width, t->n * t->width - k, t->rows + k);
+}
+
+static json_t *json_of_history(const Track *t, int floor)
+{
+    if (t->n < 2)
         return json_null();
-    return json_of(
-        "t=%p u=%p energies=%p spectrum_f=%p spectrum_t=%p spectrum=%p", json_numbers_every(step, h->n, h->t),
-        json_numbers_every(step, h->n, h->u), json_of_energies(h, step), json_numbers(SPECTRUM_FREQUENCIES, s->f),
-        json_numbers(SPECTRUM_TIMES, s->t), json_numbers(SPECTRUM_FREQUENCIES * SPECTRUM_TIMES, s->amplitude));
+    json_t *energies = json_object();
+    for (size_t k = 0; k < N_ENERGIES; k++)
+        json_object_set_new(energies, ENERGY_KEYS[k], json_of_column(t, t->width - N_ENERGIES + k));
+    return json_of("t=%p u=%p energies=%p", json_of_column(t, 0), json_of_column(t, HISTORY_U + floor), energies);
 }
 
 /* Values of all records by the rule of the run, and whether the design is better (verdict_compare); null: of what the
@@ -94,46 +113,11 @@ static json_t *json_of_baselines(const Detail *d, const MeasureOrder *order)
     return list;
 }
 
-/* What has to be borne under the first record, by the chosen design and its baselines. */
-static json_t *json_of_loads(const Detail *d)
-{
-    int borne[MEASURES_LISTED];
-    const int n = measures_borne(borne);
-    json_t *columns = json_array(), *rows = json_array();
-    for (int k = 0; k < n; k++)
-        json_array_append_new(
-            columns, json_of("title=%s unit=%s", measure(borne[k])->words.title, measure(borne[k])->words.unit));
-    for (int scene = 0; scene < N_SCENES; scene++) {
-        double values[MEASURES_LISTED];
-        for (int k = 0; k < n; k++)
-            values[k] = measure(borne[k])->words.factor * measure_value(&d->result[scene], borne[k]);
-        if (d->result[scene].outcome == RUN_OK)
-            json_array_append_new(rows,
-                                  json_of("key=%s values=%p", SCENES[scene].key, json_numbers((size_t)n, values)));
-    }
-    return json_of("columns=%p rows=%p", columns, rows);
-}
-
-/* Of the design: the largest force on every floor by side of the core, stress of the core and of buckling by storey,
- * its shear stress; null where they were not computed. */
-static json_t *json_of_forces(const SimResult *r)
-{
-    const SimForces *f = &r->forces;
-    const size_t n = r->n_floors;
-    if (r->outcome != RUN_OK || !r->forces_known)
-        return json_null();
-    return json_of("contact_n=%p stress_pa=%p shear_pa=%p buckling_pa=%p",
-                   json_pair(n, f->contact_force_n[0], f->contact_force_n[1]),
-                   f->stress_known ? json_numbers(n, f->core_storey_stress_pa) : json_null(),
-                   f->stress_known ? json_number(f->core_shear_stress_pa) : json_null(),
-                   f->buckling_known ? json_numbers(n, f->core_buckling_pa) : json_null());
-}
-
 /* What every floor reaches at least and at most under the records of the run; empty: there is one. A record under which
  * the design fails is left out. */
 static json_t *json_of_band(const Detail *d)
 {
-    static const char *const KEYS[] = {"displacement_m", "drift_m", "acceleration_g"};
+    static const char *const KEYS[] = {"peak_displacement_m", "peak_drift_m", "peak_acceleration_g"};
     json_t *band = json_object();
     for (int k = 0; k < 3 && d->by_record; k++) {
         double low[FLOORS_MAX], high[FLOORS_MAX];
@@ -159,19 +143,19 @@ json_t *detail_json(const Detail *d, const MeasureOrder *order)
     json_t *others = json_array();
     for (size_t i = 0; i < d->n_elsewhere; i++) {
         const Elsewhere *e = &d->elsewhere[i];
-        json_array_append_new(others, json_of("record=%s pga_g=%g scale=%g stretch=%g with_core=%p no_core=%p",
-                                              e->record, e->pga_g, e->scale, e->stretch,
-                                              result_json(&e->with_core, order), result_json(&e->no_core, order)));
+        json_array_append_new(others,
+                              json_of("record=%s pga_g=%g scale=%g stretch=%g with_core=%p no_core=%p", e->record,
+                                      e->pga_g, e->scale, e->stretch, result_json(SCENE_IMPACT, &e->with_core, order),
+                                      result_json(SCENE_NO_CORE, &e->no_core, order)));
     }
     json_t *o = json_of(
         "floor=%d protection=%s storey_m=%p gap_m=%p thickness_m=%p bumper_n_m=%p building_hz=%p core_hz=%p record=%s "
-        "pga_g=%g scale=%g stretch=%g loads=%p baselines=%p history_with_core=%p "
-        "history_no_core=%p forces=%p elsewhere=%p",
+        "pga_g=%g scale=%g stretch=%g baselines=%p history_with_core=%p "
+        "history_no_core=%p elsewhere=%p",
         d->floor + 1, d->protection, json_numbers(n, d->storey_m), json_numbers(n, d->gap_m),
         json_numbers(n, d->thickness_m), json_numbers(n, d->bumper_n_m), json_numbers(n, d->building_hz),
-        json_numbers(n, d->core_hz), d->record, d->pga_g, d->scale, d->stretch, json_of_loads(d),
-        json_of_baselines(d, order), json_of_history(&d->history[0], &d->spectrum[0]),
-        json_of_history(&d->history[1], &d->spectrum[1]), json_of_forces(&d->result[SCENE_IMPACT]), others);
+        json_numbers(n, d->core_hz), d->record, d->pga_g, d->scale, d->stretch, json_of_baselines(d, order),
+        json_of_history(&d->history[0], d->floor), json_of_history(&d->history[1], d->floor), others);
     json_t *error = json_array(), *standard = json_array();
     for (int k = 0; k < order->n_obj; k++) {
         json_array_append_new(error, json_number(d->error[order->of[k]]));
@@ -184,7 +168,7 @@ json_t *detail_json(const Detail *d, const MeasureOrder *order)
     if (d->gap_sides != GAPS_BOTH)
         json_put(o, "gap_side_m=%p", json_pair(n, d->gap_side_m[0], d->gap_side_m[1]));
     for (int k = 0; k < N_SCENES; k++)
-        json_object_set_new(o, SCENES[k].key, result_json(&d->result[k], order));
+        json_object_set_new(o, SCENES[k].key, result_json((SceneKind)k, &d->result[k], order));
     return o;
 }
 
@@ -273,22 +257,18 @@ json_t *growth_json(const Run *run)
     return json_of("simulated=%p volume=%p error=%p", simulated, volume, error);
 }
 
-/* The best designs of each objective, by what they have to bear. */
-static json_t *json_of_named(const Report *r)
+/* What has to be borne. */
+static json_t *json_of_borne(void)
 {
     int borne[MEASURES_LISTED];
     const int n = measures_borne(borne);
-    json_t *rows = json_array();
-    for (size_t k = 0; r->has_detail && k < r->run->schema.n_obj; k++) {
-        const size_t row = run_best(r->run, k);
-        double values[MEASURES_LISTED];
-        for (int i = 0; i < n; i++)
-            values[i] = measure(borne[i])->words.factor *
-                        schema_value(&r->run->schema, borne[i], run_f(r->run, row), r->run->table.row[row].extra);
-        json_array_append_new(rows,
-                              json_of("id=%ld values=%p", r->run->table.row[row].id, json_numbers((size_t)n, values)));
+    json_t *columns = json_array();
+    for (int i = 0; i < n; i++) {
+        const Measure *m = measure(borne[i]);
+        json_array_append_new(columns, json_of("name=%s title=%s unit=%s factor=%g", m->name, m->words.title,
+                                               m->words.unit, m->words.factor));
     }
-    return rows;
+    return columns;
 }
 
 static size_t n_evaluated(const Run *run)
@@ -313,6 +293,22 @@ static json_t *json_of_pair(const Run *run, size_t chosen)
     return list;
 }
 
+json_t *kept_json(const Report *r)
+{
+    const Run *run = r->run;
+    json_t *list = json_array();
+    for (size_t i = run_first_polished(run); r->has_detail && i < run->table.n; i++) {
+        char name[48];
+        snprintf(name, sizeof name, "design %ld", run->table.row[i].id);
+        if (run->table.row[i].kind == KIND_KEPT)
+            json_array_append_new(list, json_of("name=%s id=%ld x=%p raw=%p ground=%p", name, run->table.row[i].id,
+                                                json_numbers(run->schema.n_var, run_x(run, i)),
+                                                json_numbers(run->schema.n_obj, run_f(run, i)),
+                                                json_of("whole=%c", r->is_robust)));
+    }
+    return list;
+}
+
 json_t *report_json(const Report *r)
 {
     const Run *run = r->run;
@@ -332,7 +328,7 @@ json_t *report_json(const Report *r)
         "rule=%s chosen_error=%p version=%s revision=%s name=%s folder=%s id_step=%ld tower=%c robust=%c building=%s "
         "spread=%s "
         "knee=%ld chosen=%ld chosen_f=%p evaluated=%ld failed=%ld front=%ld schema=%p beyond_law=%p importance=%p "
-        "convergence=%p detail=%p pair=%p named=%p notes=%p notes_fault=%s settings=%p provenance=%s",
+        "convergence=%p detail=%p pair=%p borne=%p notes=%p notes_fault=%s settings=%p provenance=%s",
         rule, has_errors ? json_numbers(run->schema.n_obj, likely) : json_null(), program_version(), program_revision(),
         slash && slash[1] && !run->id_step ? slash + 1 : name, name, run->id_step, r->has_detail, r->is_robust,
         run->settings->building.model, spread_word(run->settings->sim.gap_tolerance_m, &run->settings->sim.uncertain),
@@ -340,6 +336,6 @@ json_t *report_json(const Report *r)
         json_numbers(run->schema.n_obj, run_f(run, r->chosen)), n_evaluated(run), run->n_failed, run->n_front,
         json_of_names(r), json_of_beyond_law(r), importance_json(&r->importance, &run->schema), growth_json(run),
         r->detail.n_floors > 0 ? detail_json(&r->detail, &run->schema.order) : json_null(),
-        json_of_pair(run, r->chosen), json_of_named(r), notes, fault.text, json_of_settings(run->settings),
+        json_of_pair(run, r->chosen), json_of_borne(), notes, fault.text, json_of_settings(run->settings),
         run->provenance);
 }

@@ -11,12 +11,15 @@
 
 json_t *report_json(const Report *r);
 
+/* Designs that were kept of what-if: [{"name", "id", "x", "raw": objectives, "ground": as a question of the page}]. */
+json_t *kept_json(const Report *r);
+
 /* Growth of the hypervolume: {"simulated": [], "volume": [], "error": []} of the generations that have one. */
 json_t *growth_json(const Run *run);
 
-/* One simulation: objectives, impacts, closings and peaks by floor, energies, shares of modes; {"reason"} where it
- * failed. */
-json_t *result_json(const SimResult *r, const MeasureOrder *order);
+/* One simulation: objectives, closings, every measure and part by its name; {"reason"} where it failed. */
+json_t *result_json(SceneKind kind, const SimResult *r, const MeasureOrder *order);
+json_t *put_parts(json_t *o, SceneKind kind, const SimResult *r); /* those parts; returns o */
 
 /* explained, total, centres; null: too few designs succeeded. */
 json_t *importance_json(const Importance *m, const Schema *schema);

@@ -1,5 +1,6 @@
 #include "report/what_if.h"
 
+#include <limits.h>
 #include <zlib.h>
 
 #include "base/json.h"
@@ -16,7 +17,6 @@ static const double PGA_SHARE = 4, STRETCH_SHARE = 2, RESTITUTION[2] = {0.05, 1}
 static const char ONCE[] = " --set sim.replicates=1 --set sim.gap_tolerance_m=0 --set motion.records=none "
                            "--set search.fidelity=off";
 static const char CERTAIN[] = " --set sim.uncertain=none";
-static const char SCALED_OTHERWISE[] = " --set motion.factor=1 --set motion.sa_g=0 --set motion.target=none";
 
 /* The numbers that whole and stepped variables take; null of others: the page has the words of a choice. */
 static json_t *values_of(const Problem *p)
@@ -41,41 +41,44 @@ static Status name_record(const char *source, void *user, Err *err)
     return STATUS_OK;
 }
 
-/* gzip, then base64 (RFC 4648), to be freed. */
-static Status packed_text(const unsigned char *bytes, size_t n, char **out, Err *err)
+void *gzip_bytes(const void *bytes, size_t n, size_t *n_packed)
 {
-    static const char DIGITS[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     z_stream z = {.next_in = (unsigned char *)(uintptr_t)bytes, .avail_in = (unsigned)n};
-    enum { GZIP = 16, WINDOW = 15, MEMORY = 8 };
-    if (deflateInit2(&z, Z_BEST_COMPRESSION, Z_DEFLATED, GZIP + WINDOW, MEMORY, Z_DEFAULT_STRATEGY) != Z_OK)
-        return fail_memory(err, n, "bytes of a scene");
-    const size_t room = deflateBound(&z, n);
-    unsigned char *packed = calloc(1, room + 3);
-    char *text = *out = malloc((room + 2) / 3 * 4 + 1);
-    if (packed && text) {
-        z.next_out = packed;
-        z.avail_out = (unsigned)room;
+    enum { GZIP = 16 };
+    if (n > INT_MAX || deflateInit2(&z, Z_DEFAULT_COMPRESSION, Z_DEFLATED, GZIP + MAX_WBITS, MAX_MEM_LEVEL,
+                                    Z_DEFAULT_STRATEGY) != Z_OK)
+        return NULL;
+    z.avail_out = (unsigned)deflateBound(&z, n);
+    void *packed = z.next_out = calloc(1, z.avail_out + 3);
+    if (packed) {
         deflate(&z, Z_FINISH);
-        for (size_t i = 0; i < z.total_out; i += 3) {
-            const unsigned long three = packed[i] << 16 | packed[i + 1] << 8 | packed[i + 2];
-            for (size_t k = 0; k < 4; k++)
-                *text++ = i + k > z.total_out ? '=' : DIGITS[three >> (18 - 6 * k) & 63];
-        }
-        *text = 0;
+        *n_packed = z.total_out;
     }
     deflateEnd(&z);
+    return packed;
+}
+
+/* gzip, then base64 (RFC 4648), to be freed; NULL: no memory. */
+static char *packed_text(const unsigned char *bytes, size_t n)
+{
+    static const char DIGITS[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    size_t size = 0;
+    unsigned char *packed = gzip_bytes(bytes, n, &size);
+    char *text = packed ? calloc(1, (size + 2) / 3 * 4 + 1) : NULL, *at = text;
+    for (size_t i = 0; text && i < size; i += 3) {
+        const unsigned long three = packed[i] << 16 | packed[i + 1] << 8 | packed[i + 2];
+        for (size_t k = 0; k < 4; k++)
+            *at++ = i + k > size ? '=' : DIGITS[three >> (18 - 6 * k) & 63];
+    }
     free(packed);
-    if (text)
-        return STATUS_OK;
-    free(*out);
-    return fail_memory(err, n, "bytes of a scene");
+    return text;
 }
 
 Status what_if_json(const Run *run, const RecordPaths *moved, json_t **out, Err *err)
 {
     Settings s = *run->settings;
     unsigned char *bytes = NULL;
-    char *scene = NULL, scalings[SCALINGS_TEXT_MAX], options[sizeof ONCE + sizeof CERTAIN];
+    char *scene = NULL, options[sizeof ONCE + sizeof CERTAIN];
     Problem p;
     size_t n;
     if (s.problem.kind != PROBLEM_TOWER)
@@ -89,7 +92,8 @@ Status what_if_json(const Run *run, const RecordPaths *moved, json_t **out, Err 
     if (p.n_var != run->schema.n_var)
         status = bad_data(err, "%s: its building has other variables now", run->folder);
     THEN(status, portable_make(&s, &bytes, &n, err));
-    THEN(status, packed_text(bytes, n, &scene, err));
+    if (status == STATUS_OK && !(scene = packed_text(bytes, n)))
+        status = fail_memory(err, n, "bytes of a scene");
     json_t *records = json_array();
     THEN(status, suite_of_study(&s.motion, name_record, records, err));
 
@@ -97,18 +101,17 @@ Status what_if_json(const Run *run, const RecordPaths *moved, json_t **out, Err 
     if (status == STATUS_OK) {
         const double pga = motion_peak(&tower_record(tower_of(&p), 0)->motion) / GRAVITY;
         const size_t n_simulations = (size_t)s.sim.replicates * suite_count(&s.motion);
-        const int scales_otherwise = s.motion.pga_g == 0 && motion_scalings(&s.motion, scalings) > 0;
         snprintf(options, sizeof options, "%s%s", n_simulations == 1 ? "" : ONCE,
                  is_uncertain(&s.sim.uncertain) ? CERTAIN : "");
         *out = json_of(
             "lower=%p upper=%p values=%p pga_g=%p stretch=%p restitution=%p records=%p simulations=%ld options=%s "
-            "pga_options=%s scene=%s",
+            "scene=%s",
             json_numbers(p.n_var, p.lower), json_numbers(p.n_var, p.upper), values_of(&p),
             json_numbers(3, (double[]){pga / PGA_SHARE, pga, pga * PGA_SHARE}),
             json_numbers(
                 3, (double[]){s.motion.stretch / STRETCH_SHARE, s.motion.stretch, s.motion.stretch * STRETCH_SHARE}),
             json_numbers(3, (double[]){RESTITUTION[0], s.contact.restitution, RESTITUTION[1]}), json_incref(records),
-            (long)n_simulations, options, scales_otherwise ? SCALED_OTHERWISE : "", scene);
+            (long)n_simulations, options, scene);
     }
     json_decref(records);
     free(bytes);

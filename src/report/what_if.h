@@ -3,7 +3,7 @@
  *   {"lower": [n_var], "upper", "values": of every variable the numbers that it takes, else null,
  *    "pga_g": [least, as in the run, most], "stretch", "restitution", "records": [names],
  *    "simulations": by which the run judges a design, "options": of `imtet simulate` that make it one simulation,
- *    "pga_options": those where the peak is changed, "scene": the bytes of evaluate/portable.h, gzip, base64}
+ *    "scene": the bytes of evaluate/portable.h, gzip, base64}
  *
  * The scene holds the records themselves: whoever gets the page gets them.
  *
@@ -13,5 +13,8 @@
 #include <jansson.h>
 
 #include "study/record_paths.h"
+
+/* n bytes as gzip, and two more of 0, to be freed; NULL: too many, or no memory. */
+void *gzip_bytes(const void *bytes, size_t n, size_t *n_packed);
 
 Status what_if_json(const Run *run, const RecordPaths *moved, json_t **out, Err *err);

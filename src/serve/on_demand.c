@@ -8,22 +8,18 @@
 #include "report/report_json.h"
 #include "report/what_if.h"
 #include "settings/settings.h"
-
-typedef struct {
-    long id;
-    int has_devices;
-    char *text; /* NULL: none */
-} KnownDesign;
+#include "store/store.h"
+#include "study/improver.h"
 
 struct OnDemand {
-    Settings settings; /* of the run, as is the provenance; neither changes */
-    char *provenance;
+    char *provenance; /* of the run, and when it began: neither changes */
+    char started[24];
     const RecordPaths *moved;
     atomic_int n_users;
     pthread_mutex_t designs; /* of the rest */
-    KnownDesign design[DESIGNS_KEPT];
-    size_t next_design;
-    char *scene; /* what_if_json as text; NULL: nobody asked yet */
+    long knee;               /* of the last one that stood beside all baselines, */
+    char *knee_text;         /* its answer; NULL: none */
+    char *scene;             /* what_if_json as text; NULL: nobody asked yet */
 };
 
 /* -- life ---------------------------------------------------------------------------------------------------------- */
@@ -39,7 +35,7 @@ Status on_demand_open(OnDemand **out, const Run *run, const RecordPaths *moved, 
     }
     pthread_mutex_init(&o->designs, NULL);
     o->n_users = 1;
-    o->settings = *run->settings;
+    snprintf(o->started, sizeof o->started, "%s", run->n_sessions > 0 ? run->session[0].started : "");
     o->moved = moved;
     *out = o;
     return STATUS_OK;
@@ -55,28 +51,17 @@ void on_demand_close(OnDemand *o)
 {
     if (!o || atomic_fetch_sub(&o->n_users, 1) > 1)
         return;
-    for (size_t i = 0; i < DESIGNS_KEPT; i++)
-        free(o->design[i].text);
+    free(o->knee_text);
     pthread_mutex_destroy(&o->designs);
     free(o->provenance);
     free(o->scene);
     free(o);
 }
 
-static void count_difference(const char *key, unsigned flags, const char *was, const char *is, void *user)
-{
-    int *n = user;
-    (void)key;
-    (void)was;
-    (void)is;
-    *n += !(flags & (SETTING_LIMIT | SETTING_FREE));
-}
-
 int on_demand_is_of(const OnDemand *o, const Run *run)
 {
-    int n = 0;
-    settings_compare(&o->settings, run->settings, count_difference, &n);
-    return n == 0 && strcmp(o->provenance, run->provenance) == 0;
+    return strcmp(o->started, run->n_sessions > 0 ? run->session[0].started : "") == 0 &&
+           strcmp(o->provenance, run->provenance) == 0;
 }
 
 /* -- a design of the run ------------------------------------------------------------------------------------------- */
@@ -87,14 +72,10 @@ static Status find_design(OnDemand *o, const Run *run, long id, char **text, Err
 {
     const size_t row = run_find(run, id);
     const int with_devices = run->n_front > 0 && row == run_knee(run);
-    KnownDesign *place = &o->design[o->next_design];
     Settings s = *run->settings;
     OtherRecords others = {0};
     Detail d;
-    *text = NULL;
-    for (KnownDesign *known = o->design; known < o->design + DESIGNS_KEPT && !*text; known++)
-        if (known->text && known->id == id && known->has_devices >= with_devices)
-            *text = strdup(known->text);
+    *text = with_devices && o->knee_text && o->knee == id ? strdup(o->knee_text) : NULL;
     if (*text)
         return STATUS_OK;
     if (run->settings->problem.kind != PROBLEM_TOWER || row == run->table.n)
@@ -118,9 +99,11 @@ static Status find_design(OnDemand *o, const Run *run, long id, char **text, Err
     *text = json_dumps(all, JSON_COMPACT | JSON_REAL_PRECISION(6));
     json_decref(all);
     detail_free(&d);
-    free(place->text);
-    *place = (KnownDesign){id, with_devices, strdup(*text)};
-    o->next_design = (o->next_design + 1) % DESIGNS_KEPT;
+    if (with_devices) {
+        free(o->knee_text);
+        o->knee_text = strdup(*text);
+        o->knee = id;
+    }
     return STATUS_OK;
 }
 
@@ -129,6 +112,41 @@ Status on_demand_design(OnDemand *o, const Run *run, long id, char **text, Err *
     pthread_mutex_lock(&o->designs);
     const Status status = find_design(o, run, id, text, err);
     pthread_mutex_unlock(&o->designs);
+    return status;
+}
+
+/* An ImproveMethod: the design that the user brings is simulated as the run does, and is the next one of the path. */
+static Status try_kept(Improver *m, Err *err)
+{
+    const double *x = m->config->user;
+    for (size_t j = 0; j < m->problem->n_var; j++)
+        if (!(x[j] >= m->problem->lower[j] && x[j] <= m->problem->upper[j]))
+            return bad_data(err, "%s: %g is outside of its bounds", schema_variable(&m->run->schema, j)->name, x[j]);
+    TRY(improver_note(m, 1, &x, 0, err));
+    return improver_check(m, err);
+}
+
+Status on_demand_keep(OnDemand *o, const Run *run, size_t n, double x[], long *id, Err *err)
+{
+    Settings s = *run->settings;
+    Run now = {0}, with = *run;
+    Improved tried = {0};
+    RunStore *store;
+    if (n != run->schema.n_var)
+        return bad_data(err, "a design of %s has %zu variables", run->folder, run->schema.n_var);
+    TRY(record_paths_find(&s, run->provenance, o->moved, err));
+    TRY(store_open(&store, run->folder, 0, err));
+    with.settings = &s;
+    Status status = improve_design(&with, run_knee(run), &(ImproveConfig){.user = x}, try_kept, &tried, err);
+    if (status == STATUS_OK) {
+        Evaluation *kept = &tried.designs.row[1];
+        kept->kind = KIND_KEPT;
+        status = store_polished(store, kept, run->tried_to_polish, run->polished_at, id, err);
+        THEN(status, store_write_front(store, &now, err));
+    }
+    run_free(&now);
+    improved_free(&tried);
+    store_free(store);
     return status;
 }
 

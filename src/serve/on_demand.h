@@ -2,8 +2,8 @@
  *
  * Design   any of the run as report/detail.h has it, and under the built-in motions that the study does not use:
  *          {"id", "objectives": [n_obj] as in the run, "detail"}. The knee stands beside all baselines; any other
- *          beside no core and rigidly connected, since the devices are searched for anew for each core. The last
- *          DESIGNS_KEPT are kept
+ *          beside no core and rigidly connected, since the devices are searched for anew for each core. The knee is
+ *          kept
  * Scene    what the page needs to simulate other designs itself (report/what_if.h), made once
  *
  * Life cycle  on_demand_open -> on_demand_share ... -> on_demand_close, once for each of both
@@ -15,8 +15,6 @@
 
 #include "store/run.h"
 #include "study/record_paths.h"
-
-enum { DESIGNS_KEPT = 32 };
 
 typedef struct OnDemand OnDemand;
 
@@ -30,5 +28,8 @@ int on_demand_is_of(const OnDemand *o, const Run *run);
 
 /* text: JSON, to be freed. */
 Status on_demand_design(OnDemand *o, const Run *run, long id, char **text, Err *err);
+
+/* x (n) simulated as the run does and stored in it, of the kind `kept`. */
+Status on_demand_keep(OnDemand *o, const Run *run, size_t n, double x[], long *id, Err *err);
 
 Status on_demand_scene(OnDemand *o, const Run *run, char **text, Err *err);

@@ -6,10 +6,10 @@
 #include <pthread.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
-#include <zlib.h>
 
 #include "base/json.h"
 #include "report/report_json.h"
+#include "report/what_if.h"
 #include "serve/answers.h"
 #include "serve/guard.h"
 #include "store/notes.h"
@@ -112,25 +112,17 @@ static enum MHD_Result send_answer(struct MHD_Connection *c, Answer *a)
 {
     const char *takes = MHD_lookup_connection_value(c, MHD_HEADER_KIND, MHD_HTTP_HEADER_ACCEPT_ENCODING);
     size_t n = a->text ? strlen(a->text) : 0;
-    int is_packed = 0;
-    z_stream z = {.next_in = (Bytef *)a->text, .avail_in = (uInt)n};
-    if (n >= PACKED_MIN && n <= INT_MAX && takes && strstr(takes, "gzip") && !strstr(takes, "gzip;q=0") &&
-        deflateInit2(&z, Z_DEFAULT_COMPRESSION, Z_DEFLATED, MAX_WBITS + 16, MAX_MEM_LEVEL, Z_DEFAULT_STRATEGY) ==
-            Z_OK) {
-        const uLong most = deflateBound(&z, n);
-        char *packed = malloc(most);
-        z.next_out = (Bytef *)packed;
-        z.avail_out = (uInt)most;
-        is_packed = packed && deflate(&z, Z_FINISH) == Z_STREAM_END;
-        free(is_packed ? a->text : packed);
-        a->text = is_packed ? packed : a->text;
-        n = is_packed ? z.total_out : n;
-        deflateEnd(&z);
+    char *packed = NULL;
+    if (n >= PACKED_MIN && takes && strstr(takes, "gzip") && !strstr(takes, "gzip;q=0"))
+        packed = gzip_bytes(a->text, n, &n);
+    if (packed) {
+        free(a->text);
+        a->text = packed;
     }
     const char *const HEADERS[][2] = {{MHD_HTTP_HEADER_CONTENT_TYPE, a->type},
                                       {MHD_HTTP_HEADER_LOCATION, a->place[0] ? a->place : NULL},
                                       {MHD_HTTP_HEADER_ALLOW, a->allow},
-                                      {MHD_HTTP_HEADER_CONTENT_ENCODING, is_packed ? "gzip" : NULL},
+                                      {MHD_HTTP_HEADER_CONTENT_ENCODING, packed ? "gzip" : NULL},
                                       {"Cache-Control", "no-store"},
                                       {"X-Content-Type-Options", "nosniff"},
                                       {"Referrer-Policy", "no-referrer"},
@@ -251,7 +243,7 @@ static Status show_notes(Visit *v, Answer *a, Err *err)
     return answer_json(notes, 6, a);
 }
 
-/* Of a design of the run; what is noted then is the answer. */
+/* Of a design of the run, 0: of the run; what is noted then is the answer. */
 static Status take_note(Visit *v, Answer *a, Err *err)
 {
     const Run *run = &v->view.snapshot->run;
@@ -261,7 +253,7 @@ static Status take_note(Visit *v, Answer *a, Err *err)
     Status status = STATUS_OK;
     if (!json_is_integer(id) || !text)
         status = bad_data(err, "a note is {\"id\": number, \"text\": words}");
-    else if (run_find(run, json_integer_value(id)) == run->table.n)
+    else if (json_integer_value(id) != 0 && run_find(run, json_integer_value(id)) == run->table.n)
         status = fail(err, STATUS_MISSING, "%s: has no design %lld", run->folder, json_integer_value(id));
     pthread_mutex_lock(&v->server->notes);
     THEN(status, notes_put(run->folder, json_integer_value(id), text, err));
@@ -269,6 +261,22 @@ static Status take_note(Visit *v, Answer *a, Err *err)
     json_decref(given);
     TRY(status);
     return show_notes(v, a, err);
+}
+
+/* A design that was kept of what-if: its id in the run. */
+static Status take_kept(Visit *v, Answer *a, Err *err)
+{
+    const Snapshot *snapshot = v->view.snapshot;
+    json_t *given = json_loadb(v->request->body, v->request->n, JSON_REJECT_DUPLICATES, NULL);
+    const json_t *x = json_object_get(given, "x");
+    const size_t n = json_array_size(x);
+    double values[DESIGN_VARIABLES_MAX];
+    long id = 0;
+    for (size_t j = 0; j < n && j < DESIGN_VARIABLES_MAX; j++)
+        values[j] = json_number_value(json_array_get(x, j));
+    json_decref(given);
+    TRY(on_demand_keep(snapshot->on_demand, &snapshot->run, n, values, &id, err));
+    return answer_json(json_of("id=%ld", id), 6, a);
 }
 
 /* The fronts of this run and the others that the path names, in one box. */
@@ -306,14 +314,32 @@ static Status show_runs(Visit *v, Answer *a, Err *err)
     for (size_t i = 0; i < watch_n(w); i++) {
         View view;
         Err why = {0};
+        if (!watch_name(w, i))
+            continue;
         if (watch_take(w, i, GLANCE_S, &view, &why) != STATUS_OK)
             view.why = why;
-        json_t *one = answer_status(&view, watch_name(w, i));
+        json_t *notes = NULL, *one = answer_status(&view, watch_name(w, i));
+        if (view.snapshot)
+            notes_read(view.snapshot->run.folder, &notes, &why);
+        json_put(one, "at=%ld note=%s", i, json_string_value(json_object_get(notes, "0")));
+        json_decref(notes);
         watch_give(&view);
-        json_put(one, "at=%ld", i);
         json_array_append_new(list, one);
     }
     return answer_json(list, 6, a);
+}
+
+/* Another name for the run, or none: then it is removed. */
+static Status move_run(Visit *v, Answer *a, Err *err)
+{
+    json_t *given = json_loadb(v->request->body, v->request->n, JSON_REJECT_DUPLICATES, NULL);
+    const json_t *name = json_object_get(given, "name");
+    Status status = json_is_string(name) || json_is_null(name)
+                        ? watch_move(v->server->watch, v->run, json_string_value(name), err)
+                        : bad_data(err, "wanted is {\"name\": words}, or null to remove the run");
+    json_decref(given);
+    TRY(status);
+    return show_runs(v, a, err);
 }
 
 /* The run whose last session began last. */
@@ -397,6 +423,8 @@ static const Route ROUTES[] = {{"", 0, 0, show_newest, NULL},
                                {"design", 1, 1, show_design, NULL},
                                {"scene", 1, 0, show_scene, NULL},
                                {"notes", 1, 0, show_notes, take_note},
+                               {"kept", 1, 0, NULL, take_kept},
+                               {"move", 1, 0, NULL, move_run},
                                {"against", 1, PATH_NUMBERS, show_against, NULL}};
 
 /* The answer to a request that is whole. */
@@ -447,9 +475,9 @@ static void judge(const Server *s, struct MHD_Connection *c, const char *url, co
         *a = redirection(strrchr(url, '/') + 1);
     else if (!r->route)
         *a = refusal(c, MHD_HTTP_NOT_FOUND, "there is no such part");
-    else if (!gets && !(posts && r->route->post)) {
+    else if (!(gets ? r->route->get : posts ? r->route->post : NULL)) {
         *a = refusal(c, MHD_HTTP_METHOD_NOT_ALLOWED, "this method is not known here");
-        a->allow = r->route->post ? "GET, HEAD, POST" : "GET, HEAD";
+        a->allow = !r->route->get ? "POST" : r->route->post ? "GET, HEAD, POST" : "GET, HEAD";
     } else if (length && strtoull(length, NULL, 10) > (posts ? BODY_MAX : 0))
         *a = refusal(c, MHD_HTTP_CONTENT_TOO_LARGE, "too large");
 }

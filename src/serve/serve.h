@@ -10,10 +10,12 @@
  *   GET  /TOKEN/RUN/design/ID       a design simulated (serve/on_demand.h)
  *   GET  /TOKEN/RUN/scene           what the page simulates with (report/what_if.h)
  *   GET  /TOKEN/RUN/notes           what was noted of designs (store/notes.h);  POST: {"id": N, "text": T}
+ *   POST /TOKEN/RUN/kept            {"x": [...]} of what-if is simulated and stored in the run (serve/on_demand.h)
+ *   POST /TOKEN/RUN/move            {"name": N}, null: the run is removed; of a folder of runs
  *   GET  /TOKEN/RUN/against/OTHER,...   up to four runs
  *
- * HEAD is GET without the body; /TOKEN and /TOKEN/RUN lead to the addresses with a slash. Nothing here writes to a
- * run but its notes. A request that is refused gets a status and {"error": words}: 403 token, Host or Origin, 404, 405,
+ * HEAD is GET without the body; /TOKEN and /TOKEN/RUN lead to the addresses with a slash. No GET writes to a
+ * run. A request that is refused gets a status and {"error": words}: 403 token, Host or Origin, 404, 405,
  * 413. A run that was made anew in the place of another is served as it is now.
  *
  * Bounds    PEERS_MAX connections, fewer where few files may be open; of those that wait for a request half as many,

@@ -1,6 +1,9 @@
 #include "serve/watch.h"
 
+#include <fcntl.h>
+#include <ftw.h>
 #include <pthread.h>
+#include <stdio.h>
 #include <sys/stat.h>
 #include <time.h>
 
@@ -20,6 +23,7 @@ typedef struct {
 
 typedef struct {
     char folder[PATH_MAX], name[NAME_MAX + 1];
+    atomic_int is_gone;    /* it was renamed or removed: its number leads nowhere */
     pthread_mutex_t mutex; /* of the rest, held while the run is read */
     View view;             /* the newest; its snapshot NULL: none */
     Stamp stamp;           /* of that snapshot */
@@ -117,7 +121,7 @@ static void add(const char *folder, const char *name, void *user)
 {
     Watch *w = user;
     for (size_t i = 0; i < w->n; i++)
-        if (strcmp(w->run[i]->name, name) == 0)
+        if (!w->run[i]->is_gone && strcmp(w->run[i]->name, name) == 0)
             return;
     Watched *r = w->n < RUNS_MAX ? calloc(1, sizeof *r) : NULL;
     if (!r)
@@ -146,7 +150,32 @@ size_t watch_n(Watch *w)
 
 const char *watch_name(Watch *w, size_t i)
 {
-    return w->run[i]->name;
+    return w->run[i]->is_gone ? NULL : w->run[i]->name;
+}
+
+/* Files of a folder, then the folder. */
+static int remove_one(const char *path, const struct stat *about, int kind, struct FTW *place)
+{
+    (void)about, (void)kind, (void)place;
+    return remove(path);
+}
+
+Status watch_move(Watch *w, size_t i, const char *name, Err *err)
+{
+    Watched *r = w->run[i];
+    Folder held;
+    char place[PATH_MAX];
+    if (w->is_run)
+        return bad_data(err, "%s: is served alone: rename or remove it from the folder that holds it", r->name);
+    if (name && (!name[0] || name[0] == '.' || strchr(name, '/')))
+        return bad_data(err, "'%.80s' is no name of a folder", name);
+    TRY(folder_take(&held, r->folder, 0, err));
+    folder_path(w->folder, name ? name : "", place);
+    r->is_gone = (name ? renameat2(AT_FDCWD, r->folder, AT_FDCWD, place, RENAME_NOREPLACE)
+                       : nftw(r->folder, remove_one, 8, FTW_DEPTH | FTW_PHYS)) == 0;
+    Status status = r->is_gone ? STATUS_OK : fail_errno(err, name ? place : r->folder, "cannot be made or removed");
+    folder_release(&held);
+    return status;
 }
 
 Status watch_open(Watch **out, const char *folder, const RecordPaths *moved, Err *err)
@@ -211,6 +240,8 @@ Status watch_take(Watch *w, size_t i, double seconds, View *view, Err *err)
         }
         pthread_mutex_unlock(&other->mutex);
     }
+    if (r->is_gone)
+        return fail(err, STATUS_MISSING, "%s: was renamed or removed", r->name);
     pthread_mutex_lock(&r->mutex);
     read_again(w, r);
     r->kept_to = fmax(r->kept_to, clock_seconds() + seconds);

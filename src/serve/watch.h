@@ -38,7 +38,10 @@ void watch_close(Watch *w);
 /* Runs keep their numbers; those of a folder that came since then are found by watch_find. */
 void watch_find(Watch *w);
 size_t watch_n(Watch *w);
-const char *watch_name(Watch *w, size_t i);
+const char *watch_name(Watch *w, size_t i); /* NULL: gone by watch_move */
+
+/* Another name for its folder, NULL: none and it is removed with all that is in it. Not while a process works on it. */
+Status watch_move(Watch *w, size_t i, const char *name, Err *err);
 
 /* The run as it is now, kept for so many seconds more. One that could not be read is tried again
  * after AGAIN_S; until then the reason is the answer, or stands beside the snapshot before. */

@@ -46,7 +46,7 @@ Status notes_of_run(const Run *run, json_t **notes, Err *err)
         const long id = strtol(key, NULL, 10);
         char number[24];
         snprintf(number, sizeof number, "%ld", id);
-        if (strcmp(number, key) != 0 || run_find(run, id) == run->table.n) {
+        if (strcmp(number, key) != 0 || (id != 0 && run_find(run, id) == run->table.n)) {
             status = bad_data(err, "%s/notes.json: the run has no design '%s': mend the number of its note",
                               run->folder, key);
             json_object_del(*notes, key);

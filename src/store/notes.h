@@ -1,5 +1,5 @@
-/* store/notes.h -- what people say of designs: RUN/notes.json, {"417": "for the client", ...}, beside the run and never
- * read by a search. It may be edited by hand.
+/* store/notes.h -- what people say of designs: RUN/notes.json, {"417": "for the client", ...}, "0" of the run itself,
+ * beside the run and never read by a search. It may be edited by hand.
  *
  * Ownership  the caller's reference
  * Threads    one writer at a time; a reader finds the notes of before or after

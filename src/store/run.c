@@ -83,7 +83,7 @@ size_t run_find(const Run *run, long id)
 size_t run_first_polished(const Run *run)
 {
     size_t n = run->table.n;
-    while (n > 0 && run->table.row[n - 1].kind == KIND_POLISHED)
+    while (n > 0 && kind_is_outside(run->table.row[n - 1].kind))
         n--;
     return n;
 }
@@ -103,7 +103,7 @@ void run_minimise(const Run *run, size_t row, double f[])
 
 static int run_has_polished(const Run *run)
 {
-    return run->table.n > 0 && run->table.row[run->table.n - 1].kind == KIND_POLISHED;
+    return run_first_polished(run) < run->table.n;
 }
 
 static void list_front(Run *run)
@@ -149,7 +149,7 @@ Status run_settle_front(Run *run, Err *err)
     if (has_finer || run_has_polished(run)) {
         for (size_t i = 0; i < run->table.n; i++)
             run->place[i].on_front |=
-                run->table.row[i].kind == KIND_POLISHED || (has_finer && run->place[i].entered != NEVER);
+                kind_is_outside(run->table.row[i].kind) || (has_finer && run->place[i].entered != NEVER);
         return run_form_front(run, err);
     }
     TRY_ROOM(run->front, run->table.n + 1, "designs", err);
@@ -172,7 +172,7 @@ size_t run_evaluations(const Run *run, size_t first)
             kind = sd && isfinite(sd[0]) ? KIND_FINISHED : KIND_SCREENED;
         sum += kind == KIND_SCREENED   ? cheap
                : kind == KIND_FINISHED ? whole - cheap
-               : kind == KIND_POLISHED ? 0
+               : kind_is_outside(kind) ? 0
                                        : whole;
     }
     return sum / whole;
@@ -247,7 +247,7 @@ size_t run_spread_out(const Run *run, size_t n, int with_polished, size_t rows[]
         double most = chosen == 0 ? -INFINITY : 0.0;
         for (size_t i = 0; i < run->n_front; i++) {
             const size_t row = run->front[i];
-            if (!with_polished && run->table.row[row].kind == KIND_POLISHED)
+            if (!with_polished && kind_is_outside(run->table.row[row].kind))
                 continue;
 
             /* The square of the scaled distance to the nearest of those chosen; of the first to the ideal point. */

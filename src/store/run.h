@@ -1,9 +1,9 @@
 /* store/run.h -- a run as its database has it: settings, every evaluation, the front, how it came about.
  *
  * Read once by a command (store/run_read.h) and handed on as const Run *. Rows: first those of the search, in the order
- * of their ids, as they were asked for; then the polished ones (KIND_POLISHED). An id is the next one when its row is
- * stored: those of the search are 1, 2, ... but for polished ones between sessions. A simulation of a generation that
- * is under way, or was cut short, has kind KIND_UNFINISHED; it is on no front yet.
+ * of their ids, as they were asked for; then the polished ones and those that are kept (kind_is_outside). An id is the
+ * next one when its row is stored: those of the search are 1, 2, ... but for others between sessions. A simulation of a
+ * generation that is under way, or was cut short, has kind KIND_UNFINISHED; it is on no front yet.
  *
  * Replicates  a design that was simulated again has in F the mean of its simulations, and sd is estimated from all
  *             repeats of the run (moga/noise.h); one with a simulation that failed keeps its first

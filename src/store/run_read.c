@@ -113,7 +113,7 @@ static Status take_row(const Evaluation *e, void *user, Err *err)
     Loading *l = user;
     Run *run = l->run;
     const long expected = (run->table.n + l->polished.n) + 1;
-    if (e->kind == KIND_POLISHED)
+    if (kind_is_outside(e->kind))
         return evaluation_table_append(&l->polished, e, err);
     return run->table.n >= run->n_finished || e->id == expected
                ? evaluation_table_append(&run->table, e, err)
@@ -127,7 +127,7 @@ static Status make_places(Run *run, Err *err)
     for (size_t i = 0, m = 0; i < run->table.n; i++) {
         Evaluation *e = &run->table.row[i];
         RunPlace *place = &run->place[i];
-        while (m < run->n_marks && run->mark[m].id < e->id && e->kind != KIND_POLISHED)
+        while (m < run->n_marks && run->mark[m].id < e->id && !kind_is_outside(e->kind))
             m++;
         const int is_marked = m < run->n_marks && run->mark[m].id == e->id;
         *place = (RunPlace){.entered = is_marked ? run->mark[m].entered : NEVER,
@@ -136,7 +136,7 @@ static Status make_places(Run *run, Err *err)
         place->on_front = place->ok && place->entered != NEVER && place->left == NEVER;
         run->n_failed += !place->ok;
         run->n_repeats += e->kind == KIND_REPEAT;
-        if (e->kind != KIND_REPEAT && e->kind != KIND_POLISHED)
+        if (e->kind != KIND_REPEAT && !kind_is_outside(e->kind))
             e->replicates = e->kind == KIND_SCREENED ? 1 : (int)run->settings->sim.replicates;
     }
     return STATUS_OK;
@@ -144,7 +144,7 @@ static Status make_places(Run *run, Err *err)
 
 static int is_known_to_search(const Evaluation *r)
 {
-    return r->kind != KIND_UNFINISHED && r->kind != KIND_POLISHED;
+    return r->kind != KIND_UNFINISHED && !kind_is_outside(r->kind);
 }
 
 /* Designs as the search sees them, in its archive: each with the mean of its evaluations. */

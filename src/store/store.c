@@ -107,7 +107,7 @@ static Status take_open_row(const Evaluation *e, void *user, Err *err)
         TRY(evaluation_table_append(&store->unfinished, e, err));
         store->unfinished.row[store->unfinished.n - 1].id = number_of(store, e->id);
     }
-    if (e->kind != KIND_POLISHED)
+    if (!kind_is_outside(e->kind))
         return STATUS_OK;
     long *wider = realloc(store->polished, (store->n_polished + 1) * sizeof *wider);
     if (!wider)
@@ -129,7 +129,8 @@ static Status load_run(RunStore *store, Err *err)
     database_grow(store->db);
     store->unfinished = evaluation_table(s->n_var, s->n_obj, s->n_extra);
     store->n_known = store->n_stored = run->n_finished;
-    TRY(rows_each(store->db, ROWS_EVALUATION, s, "kind IS NULL OR kind = 'polished'", take_open_row, store, err));
+    TRY(rows_each(store->db, ROWS_EVALUATION, s, "kind IS NULL OR kind IN ('polished', 'kept')", take_open_row, store,
+                  err));
     TRY_ROOM(store->was_on_front, store->n_known + 1, "designs", err);
     for (size_t i = 0; i < run->n_marks; i++) {
         const RunMark *m = &run->mark[i];
@@ -442,8 +443,8 @@ Status store_each_finished(EvaluationFn take, void *search, void *user, Err *err
 {
     RunStore *store = user;
     Each each = {.store = store, .take = take, .user = search};
-    Status status = rows_each(store->db, ROWS_EVALUATION, store->schema, "kind IS NOT NULL AND kind <> 'polished'",
-                              take_finished, &each, err);
+    Status status = rows_each(store->db, ROWS_EVALUATION, store->schema,
+                              "kind IS NOT NULL AND kind NOT IN ('polished', 'kept')", take_finished, &each, err);
     if (status == STATUS_OK && each.n != store->run.n_finished)
         status = missing(store, each.n, err);
     return folder_advise(store_folder(store), status, err);
@@ -691,7 +692,7 @@ Status store_polished(RunStore *store, const Evaluation *better, size_t n_tried,
         THEN(status, database_number(store->db, "SELECT max(number) FROM generation", &generation, err));
         *id = e.id = (long)last + 1;
         e.generation = (long)generation;
-        e.kind = KIND_POLISHED;
+        e.kind = better->kind == KIND_KEPT ? KIND_KEPT : KIND_POLISHED;
         THEN(status, insert_row(store, ROWS_EVALUATION, &e, err));
     }
     THEN(status, database_do(store->db, err, "UPDATE run SET tried_to_polish = ?, polished_at = ?", "ii", n_tried,

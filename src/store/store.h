@@ -83,8 +83,8 @@ Status store_event(RunStore *store, json_t *event, Err *err);
 Status store_provenance(RunStore *store, const Run *run, Err *err);
 
 /* One more design of the finished search has been tried to polish, n_tried of a search of n_simulated; `better` (NULL:
- * it did not become better) joins the run: it gets the next id, *id, and the kind `polished`. The search does not see
- * it: a run that is resumed later does what it would have done without. */
+ * it did not become better) joins the run: it gets the next id, *id, and the kind `polished`, unless it is `kept`. The
+ * search does not see it: a run that is resumed later does what it would have done without. */
 Status store_polished(RunStore *store, const Evaluation *better, size_t n_tried, size_t n_simulated, long *id,
                       Err *err);
 

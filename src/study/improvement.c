@@ -22,8 +22,7 @@ Status improvement_expected(const Run *run, double *gain, Err *err)
         sense[k] = schema_objective(&run->schema, k)->sense;
     for (size_t i = 0; counts && i < n; i++) {
         const Evaluation *r = &run->table.row[i];
-        const int is_answer =
-            r->kind != KIND_POLISHED && r->kind != KIND_UNFINISHED && r->kind != KIND_REPEAT && run->place[i].ok;
+        const int is_answer = r->kind != KIND_UNFINISHED && r->kind != KIND_REPEAT && run->place[i].ok;
         counts[i] = is_answer && !(r->violation > 0.0);
         on_front[i] = is_answer && run->place[i].entered != NEVER && run->place[i].left == NEVER;
     }

@@ -5,11 +5,14 @@
  *
  *   p = engine_open(room, n)          0: the bytes are none, engine_answer() says why
  *   engine_ground(p, record, pga_g, stretch, restitution)    record from 0; 0: as the study says; 1, or 0 and why
- *   engine_run(p, kind)               a SceneKind, the design that stands at engine_design(p): 1, or 0 and why
- *   engine_whole(p, ...)              all simulations by which the study judges a design, on that ground
+ *   engine_run(p, kind, whole)        a SceneKind, the design that stands at engine_design(p); whole: by all
+ *                                     simulations by which the study judges a design, the ground then is of the
+ *                                     first: 1, or 0 and why
+ *   engine_histories(p)               of that design and without core (report/history.h)
  *
  * An answer is JSON: {"objectives": [n_obj] or none, "reason", "gap_m": [floors], "beyond_law", and every measure and
- * part of the result by its name (sim/result.h)}; of the whole the objectives by the rule of the study. */
+ * part of the result by its name (sim/result.h)}; of the whole the objectives by the rule of the study. Of histories
+ * {"floor", "building_hz", "history_with_core", "history_no_core"} as of a design of the report. */
 #include <stdarg.h>
 
 #include "evaluate/measures.h"
@@ -17,6 +20,7 @@
 #include "evaluate/replicates.h"
 #include "evaluate/scenario.h"
 #include "motion/motion_scale.h"
+#include "report/history.h"
 #include "sim/engine.h"
 
 typedef struct {
@@ -24,18 +28,20 @@ typedef struct {
     MeasureOrder order;
     Scenario scenario;
     size_t record;     /* of that ground */
+    double ground[3];  /* as it was asked for: pga_g, stretch, restitution */
     SimWorker *worker; /* NULL: no ground was chosen */
     double x[DESIGN_VARIABLES_MAX];
     Design design;
     SimResult result;
 } Page;
 
-enum { ANSWER_MAX = 1 << 17 };
+enum { ANSWER_MAX = 1 << 20 };
 
 /* Of the one instance: what it was asked to open, and what it says. */
 static struct {
     const Portable *open;
     size_t n;
+    int digits; /* of the numbers of a list */
     char text[ANSWER_MAX];
 } instance;
 
@@ -90,11 +96,12 @@ static void say_number(const char *name, double value)
     say(isfinite(value) ? "%.17g" : "null", value);
 }
 
-static void say_list(const char *name, size_t n, const double values[])
+/* Every step-th of n. */
+static void say_list(const char *name, size_t n, size_t step, const double values[])
 {
     say(",\"%s\":[", name);
-    for (size_t i = 0; i < n; i++)
-        say(isfinite(values[i]) ? "%s%.17g" : "%snull", i ? "," : "", values[i]);
+    for (size_t i = 0; i < n; i += step)
+        say(isfinite(values[i]) ? "%s%.*g" : "%snull", i ? "," : "", instance.digits, values[i]);
     say("]");
 }
 
@@ -104,18 +111,19 @@ static void say_result(const Page *p, SceneKind kind, const double objectives[])
     const SimResult *r = &p->result;
     double values[SIDES * FLOORS_MAX];
     instance.n = 0;
+    instance.digits = 17;
     say("{\"reason\":\"%s\",\"beyond_law\":%s", r->reason, beyond_contact_law(r) ? "true" : "false");
-    say_list("objectives", objectives ? (size_t)p->order.n_obj : 0, objectives);
+    say_list("objectives", objectives ? (size_t)p->order.n_obj : 0, 1, objectives);
     for (int j = 0; j < r->n_floors; j++)
         values[j] = design_gap(&p->design, j);
-    say_list("gap_m", (size_t)r->n_floors, values);
+    say_list("gap_m", (size_t)r->n_floors, 1, values);
     for (int k = 0; k < MEASURES_LISTED; k++)
         say_number(measure(k)->name, measure_value(r, k));
     for (const ResultPart *part = RESULT_PARTS; part->name; part++) {
         size_t rows;
         const size_t n = result_part(r, SCENES[kind].has, part, values, &rows);
         if (part->shape >= PART_FLOORS && n > 0)
-            say_list(part->name, rows * n, values);
+            say_list(part->name, rows * n, 1, values);
         else if (n > 0)
             say_number(part->name, values[0]);
     }
@@ -172,6 +180,7 @@ int engine_ground(Page *p, size_t record, double pga_g, double stretch, double r
     s.sim.engine = ENGINE_FAST;
     measures_ask(p->order.judged, &s.sim);
     p->record = record;
+    memcpy(p->ground, (const double[]){pga_g, stretch, restitution}, sizeof p->ground);
     sim_worker_free(p->worker);
     scenario_close(&p->scenario);
     p->worker = NULL;
@@ -199,36 +208,25 @@ static Status run(Page *p, SceneKind kind, const ReplicatePlan *plan, size_t k, 
     return STATUS_OK;
 }
 
-int engine_run(Page *p, int kind)
+int engine_run(Page *p, int kind, int whole)
 {
-    Err err = {0};
-    double objectives[N_MEASURES];
-    const ReplicatePlan plan = replicate_plan(&p->portable.settings.sim, 1);
-    if (run(p, (SceneKind)kind, &plan, 0, &err) != STATUS_OK)
-        return refuse(&err);
-    for (int k = 0; k < p->order.n_obj; k++)
-        objectives[k] = measure_value(&p->result, p->order.of[k]);
-    say_result(p, (SceneKind)kind, p->result.outcome == RUN_OK ? objectives : NULL);
-    return 1;
-}
-
-int engine_whole(Page *p, double pga_g, double stretch, double restitution)
-{
-    const ReplicatePlan plan = replicate_plan(&p->portable.settings.sim, p->portable.n_records);
+    ReplicatePlan plan = replicate_plan(&p->portable.settings.sim, whole ? p->portable.n_records : 1);
+    plan.n_replicates = whole ? plan.n_replicates : 1;
     Measured *part = calloc(plan.n_records * plan.n_replicates, sizeof *part);
     Err err = {0};
     ReplicateSummary sum;
     double objectives[N_MEASURES];
+    const double *g = p->ground;
     Status status = part ? STATUS_OK : fail_memory(&err, plan.n_records, "simulations");
 
     /* The first record comes last, so that the ground and what is said besides are those of one simulation. */
     for (size_t r = plan.n_records; r-- > 0 && status == STATUS_OK;) {
-        if (!engine_ground(p, r, pga_g, stretch, restitution)) {
+        if (whole && !engine_ground(p, r, g[0], g[1], g[2])) {
             free(part);
             return 0;
         }
         for (size_t k = plan.n_replicates; k-- > 0 && status == STATUS_OK;) {
-            status = run(p, SCENE_IMPACT, &plan, k, &err);
+            status = run(p, (SceneKind)kind, &plan, k, &err);
             part[k * plan.n_records + r] = measured(&p->result);
         }
     }
@@ -239,6 +237,36 @@ int engine_whole(Page *p, double pga_g, double stretch, double restitution)
         return refuse(&err);
     for (int k = 0; k < p->order.n_obj; k++)
         objectives[k] = sum.mean[p->order.of[k]];
-    say_result(p, SCENE_IMPACT, sum.outcome == OUTCOME_OK ? objectives : NULL);
+    say_result(p, (SceneKind)kind, sum.outcome == OUTCOME_OK ? objectives : NULL);
     return 1;
+}
+
+int engine_histories(Page *p)
+{
+    static const char *const NAMES[2] = {"history_with_core", "history_no_core"};
+    const Building *b = scene_building(p->scenario.scene);
+    const int floor = (b->n - 1) / 2;
+    Track t[2] = {0};
+    Err err = {0};
+    double hz[FLOORS_MAX];
+    const Status status = histories_run(&p->scenario, p->x, floor, t, &err);
+    instance.n = 0;
+    instance.digits = 6;
+    for (int i = 0; i < b->n; i++)
+        hz[i] = b->model.omega[i] / (2 * M_PI);
+    say("{\"floor\":%d", floor + 1);
+    say_list("building_hz", (size_t)b->n, 1, hz);
+    for (int i = 0; i < 2; i++) {
+        const size_t width = t[i].width, n = t[i].n * width, step = (t[i].n / HISTORY_POINTS + 1) * width;
+        say(",\"%s\":{\"energies\":{\"\":0", NAMES[i]);
+        for (size_t k = 0; k < N_ENERGIES; k++)
+            say_list(ENERGY_KEYS[k], n, step, t[i].rows + width - N_ENERGIES + k);
+        say("}");
+        say_list("t", n, step, t[i].rows);
+        say_list("u", n, step, t[i].rows + HISTORY_U + floor);
+        say("}");
+        track_free(&t[i]);
+    }
+    say("}");
+    return status == STATUS_OK ? 1 : refuse(&err);
 }

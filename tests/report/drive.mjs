@@ -252,6 +252,16 @@ const tried = {
     await settle();
     const told = await page.evaluate("document.querySelector('g.correlation text').textContent.replace('\u2212', '-')");
     assert.ok(Math.abs(+told - r) < 0.006, `${told} is ${r}`);
+    const isConflict = r * run.schema.objectives[0].sense * run.schema.objectives[1].sense < 0; // better in one is worse in the other
+    assert.equal(await page.evaluate("document.querySelector('g.correlation rect').getAttribute('fill')"), isConflict ? "#d55e00" : "#0072b2");
+  },
+  async "the wavelet of a steady swing is its amplitude at its frequency, of a burst a product of Gaussians"() {
+    const page_ = readFileSync(new URL("../../web/app/8-design.js", import.meta.url), "utf8"), wavelet = Function(`${page_.match(/^function wavelet[\s\S]*?^\}/m)[0]} return wavelet;`)();
+    const swing = wavelet(Array.from({ length: 4000 }, (_, k) => 0.37 * Math.sin(2 * Math.PI * 1.25 * k * 0.02 + 0.4)), 0.02, [1.25, 2.5, 0.625], [30, 40, 50]);
+    for (let k = 0; k < 3; k++) assert.ok(Math.abs(swing[k] / 0.37 - 1) < 1e-3 && swing[3 + k] < 0.0074 && swing[6 + k] < 0.0074, swing.join());
+    const d = 0.8, s = 6 / (2 * Math.PI * 2), peak = d / Math.hypot(d, s), beside = peak * Math.exp(-0.5 / (d * d + s * s)); // of a width d, 1 s from its middle
+    const burst = wavelet(Array.from({ length: 6000 }, (_, k) => Math.exp(-0.5 * ((k * 0.01 - 30) / d) ** 2) * Math.cos(4 * Math.PI * (k * 0.01 - 30))), 0.01, [2], [30, 31, 29]);
+    burst.forEach((v, k) => assert.ok(Math.abs(v / (k ? beside : peak) - 1) < 1e-3, burst.join()));
   },
   async "every design is of one type, and the typical ones are designs of the front"() {
     const types = await page.evaluate("Array.from(document.querySelectorAll('#types tbody tr'), (tr) => [+tr.cells[1].textContent.replaceAll(',', ''), +tr.cells[2].textContent])");

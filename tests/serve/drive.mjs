@@ -4,7 +4,7 @@
 //   drive.mjs IMTET --pictures FOLDER OUT   of FOLDER/kobe, a finished run
 import assert from "node:assert/strict";
 import { execFileSync, spawn } from "node:child_process";
-import { existsSync, mkdirSync, readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";
+import { cpSync, existsSync, mkdirSync, readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
 import { compare } from "../engine/forty.mjs";
@@ -191,15 +191,26 @@ const tried = {
     assert.equal(shown.length, 2);
     said.forEach((o, i) => assert.ok(shown[i].startsWith(`J1 displacement ${+o.j1_m.toPrecision(3)}\u202fm, `), `${shown[i]} is not ${o.j1_m}`));
   },
-  async "what is kept and a number typed beside a slider come back with the address"() {
-    await page.evaluate("(() => { const e = document.querySelector('[name=\"gap_05_m number\"]'); e.value = 33; e.dispatchEvent(new Event('change')); })()");
-    await until("!document.getElementById('what-if').dataset.busy");
+  async "a number beside a slider is typed; one out of its range leaves no number, and says which that is"() {
+    const type = (v) => page.evaluate(`(() => { const e = document.querySelector('[name="gap_05_m number"]'); e.value = ${v}; e.dispatchEvent(new Event("change")); })()`);
+    await type(9000);
+    assert.match(await page.evaluate("document.getElementById('place').textContent"), /^gap 5 goes from 1 to 50 mm/);
+    assert.equal(await page.evaluate("document.querySelectorAll('#trial').length"), 0);
+    await type(33);
+    await until("document.getElementById('trial') && !document.getElementById('what-if').dataset.busy");
     assert.equal(await page.evaluate("document.querySelector('.slider input[name=gap_05_m]').value"), "0.033");
+  },
+  async "what is kept is a design of the run, of a kind of its own, and comes back with the page"() {
+    const rows = () => execFileSync(imtet, ["export", join(root, "a"), "--all", "--csv", "-"], { encoding: "utf8" }).trim().split("\n").filter((row) => row.split(",")[2] === "kept");
+    const told = "Array.from(document.querySelectorAll('#kept li'), (li) => li.textContent).join('|')", before = rows().length;
     await click("#keep-trial");
-    const kept = "Array.from(document.querySelectorAll('#kept li'), (li) => li.textContent).join('|')", before = await page.evaluate(kept);
-    assert.match(decodeURIComponent(await page.evaluate("location.hash")), /kept=.*gap_05_m=0\.033/);
+    await until(`/design \\d+ of the run[^|]*$/.test(${told})`);
+    const last = rows().at(-1).split(","), j1 = await page.evaluate(`${told}.split("|").at(-1)`);
+    assert.equal(rows().length, before + 1);
+    assert.ok(j1.includes(`design ${last[0]} of the run`), j1);
     await page.call("Page.reload");
-    await until(`document.getElementById("kept") && ${kept} === ${JSON.stringify(before)}`);
+    await until(`document.getElementById("kept") && ${told}.includes("design ${last[0]}")`);
+    assert.ok(await page.evaluate(`document.getElementById("overlays").textContent.includes("design ${last[0]}")`));
   },
   async "designs stand side by side with their differences"() {
     await click("#kept li button");
@@ -227,7 +238,7 @@ const tried = {
     const missing = await page.evaluate(`(() => {
       const canvas = document.querySelector("#what-if .strip canvas[role=img]"), { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
       const isThere = (rgb) => { for (let i = 0; i < data.length; i += 4) if (data[i + 3] > 100 && rgb.every((v, k) => Math.abs(data[i + k] - v) < 8)) return true; };
-      return Array.from(document.querySelectorAll("#what-if .legend span"), (e) => [e.textContent, e.style.getPropertyValue("--key").match(/[0-9a-f]{2}/gi)]).filter(([, hex]) => hex?.length === 3 && !isThere(hex.map((h) => parseInt(h, 16)))).map(([text]) => text);
+      return Array.from(document.querySelectorAll("#what-if .beside > .legend span"), (e) => [e.textContent, e.style.getPropertyValue("--key").match(/[0-9a-f]{2}/gi)]).filter(([, hex]) => hex?.length === 3 && !isThere(hex.map((h) => parseInt(h, 16)))).map(([text]) => text);
     })()`);
     assert.deepEqual(missing, []);
     assert.equal(await page.evaluate("document.getElementById('parts').lastElementChild.id"), "theme"); // no link behind it
@@ -262,6 +273,25 @@ const tried = {
     await page.evaluate("document.querySelector('[name=\"compare b\"]').click()");
     await until("document.querySelectorAll('#runs figure svg').length >= 1 && document.querySelector('#runs .strip canvas')");
   },
+  async "runs stand first, and are noted of, renamed and deleted when one confirms it"() {
+    assert.equal(await page.evaluate("Array.from(document.querySelectorAll('main > section'), (s) => s.id).filter((id) => id !== 'live')[0]"), "runs");
+    const button = (name, word) => page.evaluate(`Array.from(document.querySelectorAll("#all-runs tr")).find((tr) => tr.cells[1].textContent === "${name}").querySelectorAll("button")[${word === "Delete" ? 1 : 0}].click()`);
+    const names = async () => (await runs()).map((r) => r.name), answers = (yes) => page.evaluate(`[window.prompt, window.confirm] = [() => "renamed", () => ${yes}]`);
+    cpSync(join(root, "c"), join(root, "spare"), { recursive: true });
+    await open("a");
+    await until("document.getElementById('all-runs')");
+    await answers(false);
+    await button("spare", "Delete");
+    await button("spare", "Rename");
+    await until("/renamed/.test(document.getElementById('all-runs').textContent)");
+    assert.ok((await names()).includes("renamed") && !(await names()).includes("spare") && existsSync(join(root, "renamed", "run.sqlite")));
+    await page.evaluate("(() => { const e = document.querySelector('[aria-label=\"note on renamed\"]'); e.value = 'a try'; e.dispatchEvent(new Event('change')); })()");
+    await until("(async () => (await (await fetch('../runs')).json()).find((r) => r.name === 'renamed').note === 'a try')()");
+    await answers(true);
+    await button("renamed", "Delete");
+    await until("!/renamed/.test(document.getElementById('all-runs').textContent)");
+    assert.ok(!existsSync(join(root, "renamed")));
+  },
   async "everything live is reached by the Tab key"() {
     const found = new Set(await page.focusedByTab(250));
     for (const wanted of ["pga_g", "gap_06_m", "t_top_m", "keep-trial", "save-kept", "Compare"]) assert.ok(found.has(wanted), `${wanted} is never focused: ${[...found]}`);
@@ -285,6 +315,7 @@ const tried = {
   },
   async "the first screen keeps its place when what is compared with arrives"() {
     await open("b");
+    await until("document.getElementById('all-runs')");
     const top = "document.getElementById('front').getBoundingClientRect().top + scrollY", before = await page.evaluate(`document.querySelector("#summary .skeleton") ? ${top} : 0`);
     await until("document.querySelector('#summary .warnings')");
     if (before) assert.ok(Math.abs((await page.evaluate(top)) - before) <= 60, `${before} px, then ${await page.evaluate(top)} px`);
@@ -350,11 +381,28 @@ const tried = {
     await page.evaluate("(() => { const s = document.querySelectorAll('.slider input[type=range]')[9]; s.value = +s.min + 0.4 * (s.max - s.min); s.dispatchEvent(new Event('input')); })()");
     await until(`+document.getElementById('what-if').dataset.turn > ${turn}`);
   },
-  async "a report simulates offline, and one without engine says nothing of it"() {
-    const html = (more) => (execFileSync(imtet, ["report", join(root, "a"), "--out", join(folder, "offline.html"), ...more]), pathToFileURL(join(folder, "offline.html")).href);
+  async "a report simulates offline, keeps a design in the file that it saves, and one without engine says nothing of it"() {
+    const html = (more) => (execFileSync(imtet, ["report", join(root, "a"), "--out", join(folder, "offline.html"), ...more]), pathToFileURL(join(folder, "offline.html")).href), saved = join(folder, "downloads", "a-kept.html");
+    const keptNow = () => page.evaluate("[document.querySelectorAll('#kept li').length, [...document.querySelectorAll('#kept li')].at(-1)?.textContent, [...document.querySelectorAll('#overlays label')].filter((e) => /^kept/.test(e.textContent)).length].join('|')");
+    const save = async () => {
+      await click("#save-page");
+      for (let k = 0; k < 250 && !existsSync(saved); k++) await pause(20);
+      return readFileSync(saved, "utf8");
+    };
     await page.call("Page.navigate", { url: html([]) });
     await until("document.getElementById('what-if')?.dataset.turn");
     assert.match(await page.evaluate("document.getElementById('place').textContent"), /ominated/);
+    await click("#keep-trial");
+    const before = await keptNow(), text = await save();
+    assert.match(before, /\(kept 1\).*\|1$/);
+    await page.call("Page.navigate", { url: pathToFileURL(saved).href });
+    await until("document.getElementById('what-if')?.dataset.turn && !document.getElementById('what-if').dataset.busy");
+    assert.equal(await keptNow(), before);
+    rmSync(saved);
+    assert.ok((await save()) === text, "saved again it is another file");
+    await page.evaluate("document.getElementById('energies-and-displacement-over-time').open = true");
+    await until("document.querySelectorAll('#what-if details svg').length >= 6");
+    assert.deepEqual(page.complaints((asked) => /^file:/.test(asked) || asked.startsWith(origin)), []);
     await page.call("Page.navigate", { url: html(["--no-engine"]) });
     await until("document.documentElement?.dataset.ready === 'yes'");
     assert.equal(await page.evaluate("document.querySelectorAll('#what-if, #engine, #scene').length"), 0);

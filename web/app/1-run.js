@@ -3,7 +3,7 @@
 const byId = (id) => document.getElementById(id), finite = Number.isFinite, root = document.documentElement;
 const run = JSON.parse(byId("run").textContent);
 const lines = byId("rows").textContent.trim().split("\n").filter((line) => line);
-const n = lines.length;
+const n = lines.length, blank = Array.from(document.body.children, (e) => (e.tagName === "SCRIPT" ? "" : e.outerHTML)).join("\n"); // of the page before anything is drawn
 
 // ---- columns: titles and units of objectives come with the run, those of the tower's variables follow from their names
 const SINGLE = {
@@ -136,7 +136,14 @@ const overlaysOf = (detail) => (detail?.baselines ?? []).filter((b) => b.objecti
   ...SCENES[b.key], key: b.key, isShown: true, raw: b.objectives, better: b.better, device: b.device,
   value: new Map(objectives.map((c, k) => [c, b.objectives[k] === null ? NaN : b.objectives[k] * c.factor])),
 }));
-const overlays = overlaysOf(run.detail);
+const TRIAL = "#c2185b", kept = JSON.parse(byId("kept-designs")?.textContent ?? "[]"); // of what-if: { name, id: of one that the run has, x, ground, raw: objectives, and what the simulation said }
+const overlayOf = ({ name, x, raw }, mark = "\u25c7") => ({
+  key: name, words: name, colour: TRIAL, mark, symbol: "diamond2", dash: mark === "\u25c7" ? [2, 3] : [], isShown: true, raw,
+  value: new Map([...objectives.map((c, k) => [c, (raw[k] ?? NaN) * c.factor]), ...variables.map((c, j) => [c, x[j] * c.factor])]),
+});
+const isLikeRun = ({ whole, ...others }) => !Object.values(others).some(Boolean) && (whole || !run.robust); // comparable with its front
+const overlays = [...overlaysOf(run.detail), ...kept.filter(({ ground }) => isLikeRun(ground)).map((one) => overlayOf(one))];
+const takeOverlay = (key) => overlays.some((o, k) => o.key === key && overlays.splice(k, 1));
 const shownOverlays = () => overlays.filter((o) => o.isShown);
 
 // Ends of a column's scale: of the designs that are kept (c.low, c.high; of all numbered columns alike together), and of what

@@ -43,7 +43,7 @@ function figure(host, title, caption, plot, ...above) {
 // Axis titles in the middle of their axes; the letters' size is in the style sheet.
 function chart(options) {
   const titled = (axis) => axis && { labelAnchor: "center", labelArrow: "none", ...axis };
-  return charts.plot({ marginLeft: 58, marginBottom: 44, marginTop: 12, color: { type: "identity" }, symbol: { type: "identity" }, ...options, x: titled(options.x), y: titled(options.y) });
+  return charts.plot({ marginLeft: 64, marginBottom: 44, marginTop: 12, color: { type: "identity" }, symbol: { type: "identity" }, ...options, x: titled(options.x), y: titled(options.y) });
 }
 
 const legend = (entries) => div("legend", ...entries.map(([label, colour, mark = "\u25a0"]) => element("span", { "data-mark": mark, style: `--key: ${colour}` }, label)));
@@ -94,7 +94,7 @@ window.onafterprint = () => {
 const barChart = (width, height, rows, places, label, options = {}, marks = []) => chart({
   width, height, ariaLabel: label, ...options,
   x: { label, grid: true, zero: true, nice: true, tickFormat: (v) => show(Math.abs(v)), ...options.x }, y: { ...floorAxis(places), ...options.y },
-  marks: [charts.rectX(rows, { x1: 0, x2: "v", y1: (r) => r.from ?? r.place - 0.38, y2: (r) => r.to ?? r.place + 0.38, fill: "colour", title: "title", fx: options.fx && "type" }), ...marks, charts.ruleX([0])],
+  marks: [charts.rectX(rows, { x1: 0, x2: "v", y1: (r) => r.from ?? r.place - 0.38, y2: (r) => r.to ?? r.place + 0.38, fill: "colour", title: "title" }), ...marks, charts.ruleX([0])],
 });
 
 // Lines over the height: { name, values from the first floor up, colour, symbol: of a dot on every floor, dash, thick }.

@@ -14,7 +14,6 @@ const state = {
   nSelected: n,
   marked: rowOf.get(run.chosen),
   theme: ownTheme,
-  trials: "", // kept of the what-if, as the address has them
   weights: new Map(), // column -> weight of the choice
   reference: new Map(), // column -> value of the reference point, in the units of the eye
   hovered: undefined, // row under the pointer
@@ -185,7 +184,7 @@ function addressOf() {
   const all = {
     axes: state.axes.map((c) => (state.inverted.has(c) ? "-" : "") + c.name).join(","), log: names([...state.log]), percent: names([...state.percent]), in: rangesText(state.ranges),
     steps: state.steps.map(({ keep, ranges }) => (keep ? "+" : "-") + rangesText(ranges)).join(";"), x: state.x.name, y: state.y.name,
-    colour: state.colour.name, theme: state.theme, kept: state.trials, weights: pairsText(state.weights), reference: pairsText(state.reference), mark: state.marked === undefined ? "" : String(ids[state.marked]),
+    colour: state.colour.name, theme: state.theme, weights: pairsText(state.weights), reference: pairsText(state.reference), mark: state.marked === undefined ? "" : String(ids[state.marked]),
   };
   return new URLSearchParams(Object.entries(all).filter(([key, v]) => v !== "" && v !== standard?.[key])).toString();
 }
@@ -232,7 +231,6 @@ function readAddress() {
   state.steps = (all.steps ?? "").split(";").filter(Boolean).map((text) => ({ keep: text[0] === "+", ranges: rangesFrom(text.slice(1)) }));
   for (const key of ["x", "y", "colour"]) state[key] = byName(all[key]) ?? state[key];
   state.marked = rowOf.get(+all.mark) ?? state.marked;
-  state.trials = all.kept ?? "";
   [state.weights, state.reference] = [all.weights, all.reference].map(pairsFrom);
   findScores();
   state.theme = all.theme === "dark" ? "dark" : "light";

@@ -184,11 +184,11 @@ function scatterMatrix(host) {
         const { left: x, top: y } = at(s, row, col), g = put(svg, "g", { class: "correlation" });
         cells.push({ a: objectives[row], b: objectives[col], box: put(g, "rect", { x, y, width: s.w, height: s.h }), text: put(g, "text", { x: x + s.w / 2, y: y + s.h / 2 + 5 }) });
       }
-  }, () => { // sign and strength: blue together, orange against each other
+  }, () => { // strength, and whether better in one is worse in the other
     for (const { a, b, box, text } of cells) {
       const r = rankCorrelation(a, b);
-      box.attr("fill", r < 0 ? VERMILLION : BLUE).attr("fill-opacity", finite(r) ? 0.55 * Math.abs(r) : 0);
+      box.attr("fill", r * a.sense * b.sense < 0 ? VERMILLION : BLUE).attr("fill-opacity", finite(r) ? 0.55 * Math.abs(r) : 0);
       text.text(finite(r) ? `${r < 0 ? "\u2212" : "+"}${Math.abs(r).toFixed(2)}` : "\u2013");
     }
-  });
+  });  host.firstChild.style.minWidth = `${margin.left + 62 * m}px`; // no number lies on another
 }

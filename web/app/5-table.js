@@ -13,10 +13,16 @@ function csvOf(isWanted) {
   return [names.slice(0, lines[0].split(",").length).map(cell).join(","), ...lines.filter((_, i) => isWanted(i))].join("\n") + "\n";
 }
 
-function saveFile(name, text) {
-  const url = URL.createObjectURL(new Blob([text], { type: "text/csv" }));
+function saveFile(name, text, type = "text/csv") {
+  const url = URL.createObjectURL(new Blob([text], { type }));
   element("a", { href: url, download: name }).click();
   setTimeout(() => URL.revokeObjectURL(url), 60000);
+}
+
+// The page as it came, with what was kept since: it opens as any other.
+function savePage() {
+  byId("kept-designs").textContent = JSON.stringify(kept).replaceAll("<", "\\u003c");
+  saveFile(run.name + "-kept.html", ["<!DOCTYPE html>", '<html lang="en">' + document.head.outerHTML, "<body>" + blank, ...Array.from(document.scripts, (e) => e.outerHTML), "</body>", "</html>"].join("\n"), "text/html");
 }
 
 function designTable(host) {

@@ -58,21 +58,25 @@ function importanceFigure(host) {
   const m = run.importance;
   if (!m) return;
   const named = objectives.map((c, k) => `${c.title}, R\u00b2 ${Math.max(0, m.explained[k]).toFixed(2)}`);
-  const rows = objectives.flatMap((_, k) => variables.map((c, j) => ({ objective: named[k], variable: c.title, what: c.what, known: m.explained[k] >= KNOWN_R2, total: m.total[k][j] })))
-    .filter((r) => r.total !== null);
-  const largest = Math.max(...rows.filter((r) => r.known).map((r) => r.total), 0.1), isCrowded = variables.length > 26;
-  const below = 16 + 7 * Math.max(...variables.map((c) => c.title.length));
+  const rows = objectives.flatMap((_, k) => variables.map((c, j) => ({ objective: named[k], variable: c.title, what: c.what, total: m.explained[k] >= KNOWN_R2 ? m.total[k][j] : null })))
+    .filter((r) => r.total !== null).map((r) => ({ ...r, total: Math.min(1, r.total) })); // what is above is its sampling error
+  const largest = Math.max(...rows.map((r) => r.total), 0.1), unknown = named.filter((_, k) => !(m.explained[k] >= KNOWN_R2)), isCrowded = variables.length > 26;
+  const names = { variable: variables.map((c) => c.title), objective: named }, middle = variables[variables.length >> 1].title;
   figure(host, "Which variables matter for which objective",
     "Total Sobol index: the share of an objective\u2019s variance over the box of the search in which the variable has a part, alone or with others. Found on a radial basis interpolant of " + count(m.centres) +
-    " of the run\u2019s designs; R\u00b2 is how much of the objective it explains when designs are left out. " + `Rows below R\u00b2 ${KNOWN_R2} are left pale: the interpolant does not know.`, (width) => chart({
-      width, height: 30 * objectives.length + below + 20, marginLeft: Math.min(230, 0.4 * width), marginBottom: below, ariaLabel: "Total Sobol indices of variables for objectives",
-      x: { label: null, domain: variables.map((c) => c.title), tickRotate: -90, tickSize: 0 }, y: { label: null, domain: named, tickSize: 0 },
-      color: { scheme: "YlGnBu", domain: [0, largest], label: "total Sobol index", legend: true },
-      marks: [
-        charts.cell(rows, { x: "variable", y: "objective", fill: "total", fillOpacity: (r) => (r.known ? 1 : 0.12), inset: 0.5, title: (r) => `${r.what} for ${r.objective}: ${show(r.total)}${r.known ? "" : ", not reliable"}` }),
-        isCrowded || width < 700 ? null : charts.text(rows.filter((r) => r.known && r.total >= 0.05), { x: "variable", y: "objective", text: (r) => r.total.toFixed(2), fill: (r) => (r.total > 0.55 * largest ? "#fff" : INK) }),
-      ],
-    }));
+    " of the run\u2019s designs; R\u00b2 is how much of the objective it explains when designs are left out.", (width) => {
+      const isNarrow = width < 700, [x, y] = isNarrow ? ["objective", "variable"] : ["variable", "objective"], below = 16 + 7 * Math.max(...names[x].map((name) => name.length));
+      return chart({
+        width, height: (isNarrow ? 18 : 30) * names[y].length + below + 20, marginLeft: Math.min(230, 0.4 * width), marginBottom: below, ariaLabel: "Total Sobol indices of variables for objectives",
+        x: { label: null, domain: names[x], tickRotate: -90, tickSize: 0 }, y: { label: null, domain: names[y], tickSize: 0 },
+        color: { scheme: "YlGnBu", domain: [0, largest], label: "total Sobol index", legend: true },
+        marks: [
+          charts.cell(rows, { x, y, fill: "total", inset: 0.5, title: (r) => `${r.what} for ${r.objective}: ${show(r.total)}` }),
+          charts.text(unknown.map((objective) => ({ objective, variable: middle })), { x, y, rotate: isNarrow ? -90 : 0, text: () => `needs more designs (R\u00b2 below ${KNOWN_R2})`, fill: INK }),
+          isCrowded || isNarrow ? null : charts.text(rows.filter((r) => r.total >= 0.05), { x, y, text: (r) => r.total.toFixed(2), fill: (r) => (r.total > 0.55 * largest ? "#fff" : INK) }),
+        ],
+      });
+    });
 }
 
 // ---- typical designs
@@ -129,7 +133,6 @@ if (types.length) {
 
 function typesPart(host) {
   if (!types.length) return;
-  const gaps = variables.filter((c) => c.name.startsWith("gap_"));
   const part = folded(host, `Typical designs: ${types.length} kinds on this front`, true);
   const rowOfType = (t, k) => {
     const name = element("button", { type: "button", title: "mark its typical design", onclick: () => mark(t.typical) }, t.name);
@@ -138,9 +141,4 @@ function typesPart(host) {
   };
   part.append(note("Clusters of the front (k-means, objectives over their ranges), each named by what sets it apart and shown by the design nearest to its middle."),
     table("types", ["type", "designs", "typical", ...objectives], types.map(rowOfType)));
-  if (!run.tower || gaps.length < 2) return;
-  const isEach = gaps.some((c) => c.name.includes("left")) && gaps.some((c) => c.name.includes("right"));
-  const rows = types.flatMap((t, k) => gaps.map((c) => ({ type: `${k + 1}`, place: +(c.name.match(/\d+/)?.[0] ?? 1), v: (isEach && c.name.includes("left") ? -1 : 1) * c.value[t.typical], colour: PALETTE[k], title: `type ${k + 1}, ${c.title}: ${show(c.value[t.typical])} mm` })));
-  figure(part, "Gaps of the typical designs", null, (width) => barChart(width, 250, rows, gaps.length / (isEach ? 2 : 1), isEach ? "gap to the left and to the right [mm]" : "gap [mm]",
-    { marginTop: 26, fx: { label: null, tickFormat: (k) => `type ${k}` }, x: { ticks: 3 }, y: { label: placeOf(gaps) } }));
 }

@@ -35,6 +35,11 @@ function overlayLegend() {
   }));
 }
 
+function overlaysChanged() {
+  byId("overlays").replaceWith(overlayLegend());
+  layoutChanged();
+}
+
 // Axes by a tick and ranges by two numbers, for those who would rather type than drag.
 function rangeInputs() {
   const inputs = columns.map((c) => {
@@ -114,7 +119,7 @@ function frontPart() {
   if (objectives.length > 1) {
     weightsPart(folded(host, "Choose by weights or a reference point"));
     const matrix = folded(host, "All pairs of objectives, with their rank correlations");
-    matrix.append(note("Above the diagonal Spearman\u2019s rank correlation of the selected designs: blue, they grow together; orange, one is paid for with the other. Signs are those of the numbers, not of better and worse."));
+    matrix.append(note("Above the diagonal Spearman\u2019s rank correlation of the selected designs: orange, better in one is worse in the other; blue, they become better together."));
     scatterMatrix(matrix.appendChild(element("figure", { class: "scroll" })));
   }
   typesPart(host);

@@ -1,6 +1,7 @@
 // The simulator itself, WebAssembly (src/wasm/engine.c), in a thread of its own. What it simulates with comes with a report
 // (#scene) or, on the live page, from the server.
-// Runs in the worker: { module, scene } first, then questions { turn, x, record, pga_g, stretch, restitution, whole, kind }.
+// Runs in the worker: { module, scene } first, then questions { turn, x, record, pga_g, stretch, restitution, whole: by all
+// simulations of the study, histories: over time }.
 function engineThread() {
   let engine, page, memory, ground, noCore;
   const unpack = async (text) => new Uint8Array(await new Response(new Blob([Uint8Array.from(atob(text), (c) => c.charCodeAt(0))]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer());
@@ -22,25 +23,21 @@ function engineThread() {
     page = must(engine.engine_open(room, bytes.length));
   }
 
-  function simulate(kind, x) {
+  function answer({ x, record = 0, pga_g = 0, stretch = 0, restitution = 0, whole = 0, histories }) {
+    const wanted = [record, pga_g, stretch, restitution], simulate = (kind, all) => {
+      must(engine.engine_run(page, kind, all));
+      return JSON.parse(said());
+    };
     new Float64Array(memory.buffer, engine.engine_design(page), x.length).set(x);
-    must(engine.engine_run(page, kind));
-    return JSON.parse(said());
-  }
-
-  function answer({ x, record = 0, pga_g = 0, stretch = 0, restitution = 0, whole, kind = 0 }) {
-    const wanted = [record, pga_g, stretch, restitution];
     if (ground !== wanted.join()) {
       ground = undefined;
       must(engine.engine_ground(page, ...wanted));
-      noCore = simulate(1, x);
+      noCore = simulate(1, 0);
       ground = wanted.join();
     }
-    if (!whole) return { ...simulate(kind, x), no_core: noCore };
-    new Float64Array(memory.buffer, engine.engine_design(page), x.length).set(x);
-    must(engine.engine_whole(page, ...wanted.slice(1)));
-    if (record) ground = undefined; // it ended with the first record
-    return { ...JSON.parse(said()), no_core: noCore };
+    if (histories) return must(engine.engine_histories(page)) && JSON.parse(said());
+    if (whole && record) ground = undefined; // it ends with the first record
+    return { ...simulate(0, whole), no_core: noCore };
   }
 
   let opened;
@@ -82,13 +79,12 @@ async function openEngine() {
 }
 
 // A question to the engine: objectives, peaks, and what of the front dominates it where both are of the same motion.
-const GROUND_KEYS = ["pga_g", "stretch", "restitution"];
 async function simulated(question) {
   engine ??= openEngine();
-  const it = await engine, a = await it.ask(question), f = a.objectives.length ? a.objectives : null;
-  const peaksOf = (r) => ({ displacement_m: r.peak_displacement_m, drift_m: r.peak_drift_m, acceleration_g: r.peak_acceleration_g });
-  const known = { ...a, objectives: f, peaks: f && peaksOf(a), no_core: peaksOf(a.no_core) };
-  if (!f || (it.simulations > 1 && !question.whole) || question.record || GROUND_KEYS.some((key) => question[key])) return known;
+  const { x, ...ground } = question, a = await (await engine).ask(question);
+  if (question.histories) return a;
+  const f = a.objectives.length ? a.objectives : null, known = { ...a, objectives: f };
+  if (!f || !isLikeRun(ground)) return known;
   const better = (one, other) => objectives.every((c, k) => c.sense * one[k] <= c.sense * other[k]) && objectives.some((c, k) => one[k] !== other[k]);
   return { ...known, dominated_by: frontRows.filter((row) => better(row, f)).length, dominates: frontRows.filter((row) => better(f, row)).length };
 }

@@ -32,7 +32,7 @@ function shownValue(c, value, error) {
 }
 
 // How far the number would be from that of the next suite: not an error of comparisons, which are under the same records.
-const bySuite = (c, error) => (error > 0 ? element("div", { class: "change", title: `Standard error of this number over the ${run.detail.records} records, by the bootstrap.` },
+const bySuite = (c, error) => (error > 0 ? element("div", { class: "change", title: "Standard error of this number over the records, by the bootstrap." },
   `records \u00b1 ${+(error * c.factor).toPrecision(2)} `, element("small", c.unit)) : "");
 
 function cards() {
@@ -55,11 +55,11 @@ const listed = (words, most = 8) => words.slice(0, most).join(", ") + (words.len
 function boundWarning(d) {
   const gaps = variables.filter((c) => /^gap_/.test(c.name)), many = charts.range(n).filter((i) => gaps.some((c) => atBound(c, c.value[i]))).length;
   const shut = (d.with_core.closings ?? []).flatMap((hits, j) => (hits || (d.gap_m[j] ?? NO_STOP_M) >= NO_STOP_M ? [] : [j + 1]));
-  return [many ? `Gaps at a bound of the search in ${count(many)} of ${count(n)} designs of the front. A wider box may hold better designs, unless such a gap never closes.` : "",
+  return [many ? `Gaps at a bound of the search in ${count(many)} of ${count(n)}` + " designs of the front. A wider box may hold better designs, unless such a gap never closes." : "",
     shut.length ? `Gaps that never close${underRecord(d) || " under this motion"}: ${shut.length === 1 ? "floor" : "floors"} ${listed(shut, 12)}.` : ""];
 }
 
-const DISSIPATED = "the modes are those of the building before it yields, and what they dissipate says little";
+const yieldWords = (r) => `Storeys that yield dissipate ${show(r.ed_hysteresis_pct)} %` + " of the input energy: the modes are those of the building before it yields, and what they dissipate says little.";
 // Behind what was found under one record, where the numbers are of several.
 const underRecord = (d) => (run.rule ? ` under ${shortName(d.record)}` : "");
 
@@ -67,21 +67,19 @@ const LADDER = [["j1_m", "J1", "m", 1], ["drift_ratio", "drift ratio", "%", 100]
 function warnings(d) {
   const all = [
     d.with_core.reason ? ["worse", `This design could not be simulated: ${d.with_core.reason}`] : null,
-    d.with_core.hysteresis_pct > 0 && objectives.some((c) => /^ed\d/.test(c.name)) ? ["note", `Storeys that yield dissipate ${show(d.with_core.hysteresis_pct)} % of the input energy: ${DISSIPATED}. Do not choose by mode shares.`] : null,
+    d.with_core.ed_hysteresis_pct > 0 && objectives.some((c) => /^ed\d/.test(c.name)) ? ["note", yieldWords(d.with_core) + " Do not choose by mode shares."] : null,
     d.with_core.beyond_law ? ["worse", "The maximum indentation is more than a tenth of the contact\u2019s radius: beyond what the contact law is meant for."] : null,
-    beyondLaw.size ? ["note", `${count(beyondLaw.size)} of ${count(n)} designs of the front are beyond the contact law (\u26a0 in the table).`] : null,
+    beyondLaw.size ? ["note", `${count(beyondLaw.size)} of ${count(n)}` + " designs of the front are beyond the contact law (\u26a0 in the table)."] : null,
     ...boundWarning(d).filter(Boolean).map((text) => ["note", text]),
     run.evaluated && run.failed > 0.05 * run.evaluated ? ["note", `${count(run.failed)} of ${count(run.evaluated)} simulations failed (imtet status says why).`] : null,
   ].filter(Boolean);
   return all.length ? element("ul", { class: "warnings", "aria-label": "Warnings" }, ...all.map(([kind, text]) => element("li", { class: kind }, element("span", { "aria-hidden": "true" }, kind === "worse" ? "\u2716 " : "\u26a0 "), text))) : "";
 }
 
-// What the design has to bear, beside its baselines and, as the run stores them, the best designs of every objective; without what
-// this scene has not. Of several records the former are under the first, the latter by the rule of the run.
+// What the design has to bear, beside its baselines; without what this scene has not.
 function loadTable(d) {
-  const { columns, rows } = d.loads, kept = columns.map((c, k) => [c, k]).filter(([, k]) => rows.some((r) => r.values[k])), cells = (values) => kept.map(([, k]) => (values[k] === null ? "" : digits(values[k])));
-  return table("loads", ["demand", ...kept.map(([c]) => c)], [...rows.map((r) => line([SCENES[r.key].words + underRecord(d), ...cells(r.values)])),
-    ...run.named.map(({ id, values }, k) => line([`best ${objectives[k].title} (design ${id}${run.rule && `; ${run.rule}`})`, ...cells(values)]))]);
+  const scenes = scenesOf(d), kept = run.borne.filter(({ name }) => scenes.some(([, r]) => r[name]));
+  return table("loads", ["demand", ...kept], scenes.map(([key, r]) => line([SCENES[key].words + underRecord(d), ...kept.map(({ name, factor }) => (r[name] === null ? "" : digits(r[name] * factor)))])));
 }
 
 function standoutTable() {
@@ -101,11 +99,11 @@ const skeleton = (height) => element("div", { class: "skeleton", "aria-hidden": 
 
 function summaryPart() {
   const d = run.detail, waits = run.tower && !d, host = byId("summary");
-  document.title = `${run.name} \u2013 imtet report`;
+  document.title = `${run.name} \u2013 imtet`;
   byId("title").textContent = `Study ${run.name}`;
   host.append(element("p", { class: waits ? "lead waits" : "lead", id: "subtitle" }, sentence(d)), ...(d?.verdict?.match(/.+/g) ?? []).map((text) => element("p", { class: "verdict" }, text)), d ? warnings(d) : waits ? skeleton(285) : "", cards());
   if (run.notes_fault) host.append(warn(`Notes: ${run.notes_fault}`));
-  if (d && run.rule) host.append(note(`The numbers are the ${run.rule}; the charts below are one simulation of it as designed, under ${shortName(d.record)}${d.records > 1 ? `; the band is what it reaches at least and at most under all ${d.records} records` : " alone"}.`));
+  if (d && run.rule) host.append(note("The numbers are the " + run.rule + "; the charts below are one simulation of it as designed, under " + `${shortName(d.record)}${d.records > 1 ? `; the band is what it reaches at least and at most under all ${d.records} records` : " alone"}.`));
   if (d) peakPart(host, d, 220);
   if (waits) host.append(element("p", { class: "note", role: "status" }, "Simulating this design and what it is compared with\u2026"), skeleton(252));
   const more = folded(host, "The best designs of the front, beside the baselines");

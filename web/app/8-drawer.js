@@ -2,8 +2,8 @@
 // what can be done with it.
 const drawer = document.body.appendChild(element("aside", { id: "drawer", tabindex: "-1", hidden: true, "aria-labelledby": "drawer-title" }));
 const plainButton = (text, act, more = {}) => element("button", { class: "plain", type: "button", onclick: act, ...more }, text);
-// What imtet serve adds: buttons, and a promise of the design in detail with what follows the peaks.
-const drawerMore = { buttons: (row) => (byId("scene") ? [whatIfButton(row)] : []), detail: () => null, rest: () => {} };
+// What imtet serve adds: a promise of the design in detail, and what follows the peaks.
+const drawerMore = { detail: () => null, rest: () => {} };
 
 // A change of widths moves everything; what is looked at stays at its height.
 function keepInPlace(act) {
@@ -32,22 +32,17 @@ function closeDrawer() {
 
 document.addEventListener("keydown", (event) => event.key === "Escape" && axisMenu.hidden && !drawer.hidden && closeDrawer());
 
-function difference(value, before) {
-  const pct = (100 * (value - before)) / Math.abs(before);
-  return element("small", { class: "difference" }, finite(pct) ? `${pct < 0 ? "\u2212" : "+"}${Math.abs(pct).toFixed(Math.abs(pct) < 10 ? 1 : 0)} %` : "");
+// sense 0: neither is better.
+function difference(value, before, sense) {
+  const exact = (100 * (value - before)) / Math.abs(before), pct = +exact.toFixed(Math.abs(exact) < 10 ? 1 : 0);
+  return element("small", { class: `difference ${VERDICT[-Math.sign(sense * pct) || 0][0]}` }, finite(pct) ? `${pct < 0 ? "\u2212" : "+"}${Math.abs(pct).toFixed(Math.abs(pct) < 10 ? 1 : 0)} %` : "");
 }
 
 function numbersOf(row) {
   const knee = rowOf.get(run.knee), other = row === knee || knee === undefined ? undefined : knee;
   return table("numbers", ["", "value", ...(other === undefined ? [] : ["from the knee"])], [
-    ...[...results, ...variables.filter((c) => c.family.length === 1 || c.words)].map((c) => line([element("span", { title: c.what }, c.title), [known(c, row), element("small", ` ${c.unit}${atBound(c, c.value[row]) ? ", at a bound" : ""}`)],
-      ...(other === undefined ? [] : [c.words ? (c.value[row] === c.value[other] ? "" : known(c, other)) : difference(c.value[row], c.value[other])])]))]);
-}
-
-// Of a design that was not simulated again: what its variables say.
-function familyFigure(host, family, row) {
-  const stem = stemOf(family), rows = family.map((c, j) => ({ place: j + 1, v: c.value[row], colour: BLUE, title: `${c.title}: ${withUnit(c, c.value[row])}` }));
-  figure(host, `${capital(stem)}s`, null, (width) => barChart(width, 70 + Math.min(260, 16 * family.length), rows, family.length, titleUnit({ ...family[0], title: stem }), { x: { ticks: 4 }, y: { label: placeOf(family) } }));
+    ...[...results, ...variables].map((c) => line([element("span", { title: c.what }, c.title), [known(c, row), element("small", ` ${c.unit}${atBound(c, c.value[row]) ? ", at a bound" : ""}`)],
+      ...(other === undefined ? [] : [c.words ? (c.value[row] === c.value[other] ? "" : known(c, other)) : difference(c.value[row], c.value[other], c.sense)])]))]);
 }
 
 // Of several runs as one: the one that has the design, and its id there.
@@ -67,12 +62,10 @@ function fillDrawer(row, d) {
   const id = ids[row];
   refill(drawer, (host) => {
     host.append(div("bar", element("h2", { id: "drawer-title" }, designName(row)), plainButton("\u00d7", closeDrawer, { "aria-label": "Close (Escape)", id: "close-drawer" })),
-      div("bar", ...drawerMore.buttons(row, d), plainButton("Export", () => saveFile(`${run.name}-${id}.csv`, csvOf((i) => i === row)), { title: "its row of front.csv" })), noteOf(id), numbersOf(row));
+      div("bar", ...(startWhatIf ? [plainButton("What if\u2026", () => startWhatIf(row)), compareButton(designOf(row))] : []), plainButton("Export", () => saveFile(`${run.name}-${id}.csv`, csvOf((i) => i === row)), { title: "its row of front.csv" })), noteOf(id), numbersOf(row));
     if (d?.reason) host.append(warn(`Not simulated: ${d.reason}`));
     if (d?.waits) host.append(element("p", { class: "note", role: "status" }, "Simulating it for its peaks\u2026"));
-    if (d?.gap_m) gapFigure(host, d);
-    else for (const family of families) if (!family[0].sense && family.length > 1 && !family[0].words) familyFigure(host, family, row);
-    if (d?.with_core) peakPart(host, d, 240);
+    if (d?.with_core) gapFigure(host, d), peakPart(host, d, 240);
     host.append(element("details", element("summary", "Evaluate, simplify, report: the commands"), element("pre", { tabindex: "0" }, commandsOf(id))));
     if (d?.with_core) drawerMore.rest(host, d);
   });

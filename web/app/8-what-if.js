@@ -1,17 +1,15 @@
 // What if: sliders for every variable, the motion and the restitution; each change is one simulation by the page itself. One question is
 // under way at a time; what was moved meanwhile is the next one, what was passed over is never asked.
-const GROUND = [["pga_g", "peak", "g", "--pga "], ["stretch", "time \u00d7", "", "--set motion.stretch="], ["restitution", "restitution", "", "--set contact.restitution="]];
-const TRIAL = "#c2185b";
-let startWhatIf = () => {};
-const whatIfButton = (row) => plainButton("What if\u2026", () => startWhatIf(row));
+const GROUND = [["pga_g", "peak", "g"], ["stretch", "time \u00d7", ""], ["restitution", "restitution", ""]];
+let startWhatIf; // once the page can simulate
+let storeKept; // of imtet serve
 
 function whatIfPart() {
   const part = laterPart("what-if", "What if", "growth");
   const said = element("p", { id: "place", role: "status" }), board = element("div");
   const sliders = div("sliders"), pictures = div("beside");
   part.append(note("Drag a gap, a thickness, the motion or the restitution: every change is simulated at once."), div("what-if", sliders, pictures));
-  const trial = { key: "trial", words: "what if", colour: TRIAL, mark: "\u25c6", symbol: "diamond2", dash: [], isShown: true, raw: [], value: new Map() };
-  const x = new Float64Array(variables.length), ground = {};
+  const x = new Float64Array(variables.length), ground = {}, trial = overlayOf({ name: "what if", x, raw: [] }, "\u25c6");
   let bounds, start, answer, turn = 0, isAsking = false, since, resting_;
 
   // ---- sliders
@@ -30,7 +28,7 @@ function whatIfPart() {
   function slider(key, title, unit, factor, [low, high], value, take, values) {
     if (typeof values?.[0] === "string") return choice(key, title, values, value, take);
     const near = (v) => values?.reduce((a, b) => (Math.abs(b - v) < Math.abs(a - v) ? b : a)) ?? v, shown = () => (values ? values[+input.value] : +input.value);
-    const label = title + (unit ? ` [${unit}]` : ""), input = element("input", { type: "range", min: values ? 0 : low, max: values ? values.length - 1 : high, step: values ? 1 : "any", name: key, "aria-label": label });
+    const label = title + (unit ? ` [${unit}]` : ""), range = `${show(low * factor)} to ${show(high * factor)} ${unit}`, input = element("input", { type: "range", min: values ? 0 : low, max: values ? values.length - 1 : high, step: values ? 1 : "any", name: key, "aria-label": label });
     const number = element("input", { type: "number", min: low * factor, max: high * factor, step: "any", name: `${key} number`, "aria-label": `${label} as a number` });
     const set = (v) => {
       input.value = values ? values.indexOf(near(v)) : v;
@@ -49,12 +47,12 @@ function whatIfPart() {
     number.onchange = (event) => {
       const v = number.value === "" ? NaN : +number.value / factor, isGood = v >= low - 1e-9 * high && v <= high + 1e-9 * high;
       number.classList.toggle("bad", !isGood);
-      number.title = isGood ? "" : `from ${show(low * factor)} to ${show(high * factor)}`;
       if (isGood) change(v, event);
+      else showNothing(title + " goes from " + range);
     };
     number.onblur = () => number.classList.contains("bad") || (number.value = digits(shown() * factor));
     set(value);
-    return { key, set, row: div("slider", element("span", title), input, number, element("small", unit)) };
+    return { key, set, row: div("slider", element("span", title, element("small", range)), input, number) };
   }
 
   const moving = { variables: [], ground: [] };
@@ -93,10 +91,8 @@ function whatIfPart() {
     const said_ = await simulated({ x: design, ...asked }).catch((error) => error);
     isAsking = false;
     if (since !== undefined) next();
-    if (said_ instanceof Error) {
-      said.textContent = `Not simulated: ${said_.message}. Without numbers until it is.`;
-      showNothing();
-    } else {
+    if (said_ instanceof Error) showNothing("Not simulated: " + said_.message);
+    else {
       answer = { ...said_, turn: ++turn, x: design, ground: asked };
       showAnswer();
       requestAnimationFrame(() => setTimeout(() => performance.measure("what-if", { start: began, end: performance.now() }))); // painted
@@ -125,7 +121,7 @@ function whatIfPart() {
   // Within a picture its lines move, as long as they fit its axis: a picture takes ten times as long to make.
   function drawPeaks(isNew) {
     for (const [key, label, host] of places) {
-      const lines = [["without core", VERMILLION, answer.no_core], ...beside().filter((o) => o.key !== "no_core").map((o) => [o.words, o.colour, run.detail[o.key]]), ["where it began", INK, start.peaks], ["what if", TRIAL, answer.peaks]].filter(([, , peaks]) => peaks)
+      const lines = [["without core", VERMILLION, answer.no_core], ...beside().filter((o) => o.key !== "no_core").map((o) => [o.words, o.colour, run.detail[o.key]]), ["where it began", INK, start.peaks], ["what if", TRIAL, answer.objectives && answer]].filter(([, , peaks]) => peaks)
         .map(([name, colour, peaks]) => ({ name, colour, values: peaks[key], thick: colour === TRIAL ? 2.6 : 1.4 }));
       const svg = host.firstChild, paths = host.querySelectorAll("[aria-label=line] path"), most = Math.max(...lines.flatMap(({ values }) => values));
       if (!isNew && lines.length && paths.length === lines.length && most <= svg.scale("x").domain[1] && most > 0.5 * svg.scale("x").domain[1]) {
@@ -138,84 +134,82 @@ function whatIfPart() {
   const drawTable = () => board.replaceChildren(table("trial", ["", ...objectives], [line([start.name, ...besides(start.raw)]), line(["what if", ...besides(answer.objectives, start.raw)])]));
 
   // No old number stands beside a slider that has moved.
-  function showNothing() {
+  function showNothing(why) {
+    said.textContent = why;
     answer = undefined;
     draw([paleFront(), { rows: [start.raw], colour: INK, thick: 2 }]);
     board.replaceChildren();
     for (const [, , host] of places) host.replaceChildren();
-    const at = overlays.indexOf(trial);
-    if (at >= 0) overlays.splice(at, 1);
-    byId("overlays").replaceWith(overlayLegend());
-    layoutChanged();
+    takeOverlay("what if");
+    overlaysChanged();
   }
 
   // The pictures of the whole front follow when the sliders rest.
   function showAnswer() {
-    start.peaks ??= answer.peaks;
+    start.peaks ??= answer;
     said.textContent = place();
     part.dataset.turn = answer.turn;
     draw([paleFront(), ...beside().map((o) => ({ rows: [o.raw], colour: o.colour, thick: 1.2 })), { rows: [start.raw], colour: INK, thick: 2 }, ...(answer.objectives ? [{ rows: [answer.objectives], colour: TRIAL, thick: 3 }] : [])]);
     drawTable();
     drawPeaks();
-    trial.raw = answer.objectives ?? [];
-    trial.value = new Map([...objectives.map((c, k) => [c, (trial.raw[k] ?? NaN) * c.factor]), ...variables.map((c, j) => [c, x[j] * c.factor])]);
-    if (!overlays.includes(trial)) {
-      overlays.push(trial);
-      byId("overlays").replaceWith(overlayLegend());
-    }
+    Object.assign(trial, overlayOf({ name: "what if", x, raw: answer.objectives ?? [] }, "\u25c6"), { isShown: trial.isShown });
     clearTimeout(resting_);
-    resting_ = setTimeout(layoutChanged, 400);
+    resting_ = setTimeout(() => drawHistories(layoutChanged()), 400);
+    if (overlays.includes(trial)) return;
+    overlays.push(trial);
+    byId("overlays").replaceWith(overlayLegend());
   }
 
   // ---- designs that are kept
-  let shownKept = "";
-  const kept = [], list = element("ol", { id: "kept" }), command = element("pre", { tabindex: "0", hidden: true });
-  const groundWords = (g) => [g.record ? bounds.records[g.record] : "", groundNumbers(g)].filter(Boolean).join(", ");
-  const groundNumbers = (g) => GROUND.filter(([key]) => g[key] !== undefined).map(([key, title, unit]) => `${title} ${digits(g[key])} ${unit}`.trim()).join(", ");
-  const groundOptions = (g) => (g.whole ? "" : bounds.options) + (g.record ? ` --record ${bounds.records[g.record]}` : "") + (g.pga_g === undefined ? "" : bounds.pga_options) + GROUND.filter(([key]) => key in g).map(([key, , , option]) => ` ${option}${g[key]}`).join("");
-
+  const list = element("ol", { id: "kept" }), command = element("pre", { tabindex: "0", hidden: true });
+  const groundWords = (g) => [g.record ? bounds.records[g.record] : "", ...GROUND.filter(([key]) => key in g).map(([key, title, unit]) => `${title} ${digits(g[key])} ${unit}`.trim())].filter(Boolean).join(", ");
   function showKept() {
-    state.trials = shownKept = keptText();
-    saveAddress();
-    list.replaceChildren(...kept.map((one, i) => element("li", `${objectives.slice(0, 3).map((c, k) => `${c.title} ${withUnit(c, one.raw[k] * c.factor)}`).join(", ")}${groundWords(one.ground) ? ` (${groundWords(one.ground)})` : ""} `,
-      plainButton("Compare", () => compare(one)), " ", plainButton("Take up again", () => set(one.x, one.ground)), " ", plainButton("Drop", () => {
+    list.replaceChildren(...kept.map((one, i) => element("li", `${objectives.slice(0, 3).map((c, k) => `${c.title} ${withUnit(c, one.raw[k] * c.factor)}`).join(", ")} (${[one.name, groundWords(one.ground), one.why].filter(Boolean).join(", ")}) `,
+      compareButton(one), " ", plainButton("Take up again", () => set(one.x, one.ground)), " ", one.id ? "" : plainButton("Drop", () => {
         kept.splice(i, 1);
-        showKept();
+        takeOverlay(one.name);
+        overlaysChanged(showKept());
       }))));
-    command.hidden = save.disabled = !kept.length;
-    const grounds = [...new Set(kept.map((one) => groundOptions(one.ground)))], file = `${run.name}-kept.csv`;
-    command.textContent = grounds.length === 1 ? `imtet simulate ${run.folder}/settings.ini --design ${file}${grounds[0]}`
-      : kept.map((one, i) => `imtet simulate ${run.folder}/settings.ini --design ${file}:${i + 1}${groundOptions(one.ground)}`).join("\n");
+    command.hidden = save.disabled = saveAll.disabled = !kept.length;
+    command.textContent = `imtet simulate ${run.folder}/settings.ini --design ${run.name}-kept.csv${kept.every(({ ground }) => ground.whole) ? "" : bounds.options}`;
   }
 
-  function keep() {
+  // On the live page the run gets it too, simulated as the run does: not under another motion, which it does not have.
+  async function keep() {
     if (!answer?.objectives || part.dataset.busy) return;
-    kept.push(asKept(answer, start.id));
-    showKept();
-  }
-  const asKept = (a, from) => ({ name: `kept ${kept.length + 1}`, from, x: a.x, ground: a.ground, raw: a.objectives, gap_m: a.gap_m, peaks: a.peaks });
-
-  // In the address: what each changed of which design, 549:gap_03_m=0.02,pga_g=0.4;...
-  const keptText = () => kept.map((one) => `${one.from}:${[...variables.flatMap((c, j) => (one.x[j] === c.raw[rowOf.get(one.from)] ? [] : [`${c.name}=${one.x[j]}`])), ...Object.entries(one.ground).map(([key, v]) => `${key}=${v}`)].join(",")}`).join(";");
-
-  async function restoreKept(text) {
-    const wanted = text.split(";").map((one) => one.split(":")).filter(([id]) => rowOf.has(+id));
-    kept.splice(0);
-    for (const [id, changes] of wanted) {
-      const given = Object.fromEntries((changes ?? "").split(",").filter(Boolean).map((one) => one.split("=")).map(([key, v]) => [key, +v]));
-      const design = variables.map((c) => given[c.name] ?? c.raw[rowOf.get(+id)]), on = Object.fromEntries([...GROUND.map(([key]) => key), "record", "whole"].filter((key) => key in given).map((key) => [key, given[key]]));
-      const a = await simulated({ x: design, ...on });
-      if (state.trials !== text) return;
-      if (a.objectives) kept.push(asKept({ ...a, x: design, ground: on }, +id));
+    const names = kept.map(({ name }) => name), { no_core: unused, ...all } = answer;
+    const one = { ...all, name: `kept ${charts.range(1, kept.length + 2).find((k) => !names.includes(`kept ${k}`))}`, raw: all.objectives };
+    kept.push(one);
+    if (isLikeRun(one.ground)) overlays.push(overlayOf(one));
+    overlaysChanged(showKept());
+    if (!storeKept) return;
+    try {
+      if (!isLikeRun(one.ground)) throw new Error("it has another motion, or fewer simulations than the run");
+      one.id = (await storeKept(one.x)).id;
+      one.why = `design ${one.id} of the run`;
+    } catch (error) {
+      one.why = `not in the run: ${error.message}`;
     }
     showKept();
   }
-  views.layout.push(() => bounds && state.trials !== shownKept && restoreKept((shownKept = state.trials)).catch((error) => (said.textContent = error.message)));
 
   const csv = () => [run.schema.variables.map(cell).join(","), ...kept.map((one) => one.x.join(","))].join("\n") + "\n";
   const save = plainButton("Download as a design file", () => saveFile(`${run.name}-kept.csv`, csv()), { id: "save-kept", disabled: true });
-  pictures.append(div("bar", plainButton("Keep", keep, { id: "keep-trial" }), save,
+  const saveAll = plainButton("Save this page with them", savePage, { id: "save-page", disabled: true, hidden: Boolean(storeKept) });
+  pictures.append(div("bar", plainButton("Keep", keep, { id: "keep-trial" }), save, saveAll,
     plainButton("Back to where it began", () => set(start.x, {}), { id: "back" })), list, command);
+
+  // The histories of the design, as those of a stored one: while they are looked at, when the sliders rest.
+  const histories = folded(pictures, "Energies and displacement over time"), overTime = histories.appendChild(element("div"));
+  histories.ontoggle = drawHistories;
+  async function drawHistories() {
+    if (!histories.open || !answer?.objectives) return;
+    const with_core = answer, d = { ...await simulated({ x: with_core.x, ...with_core.ground, histories: 1 }), with_core };
+    if (answer === with_core) refill(overTime, (host) => {
+      energyPair(host, d);
+      spectrumPair(host, d);
+    });
+  }
 
   // ---- from a design of the front
   function set(values, on) {
@@ -233,15 +227,14 @@ function whatIfPart() {
     } catch (error) {
       return void (said.textContent = `This page cannot simulate: ${error.message}.`);
     }
-    const isFirst = !moving.variables.length;
-    start = { name: `design ${ids[row]}`, id: ids[row], x: variables.map((c) => c.raw[row]), raw: objectives.map((c) => c.raw[row]) };
+    start = designOf(row);
     x.set(start.x);
-    if (isFirst) {
+    if (!moving.variables.length) {
       makeSliders();
       aroundPart(pictures, () => ({ x: Array.from(x), ...ground }), bounds);
+      showKept();
     }
     set(start.x, {});
-    if (isFirst) layoutChanged(); // designs that the address keeps
     if (go) goTo(part);
   };
   addDrawing(peaks, () => answer && drawPeaks(true));

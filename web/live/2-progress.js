@@ -1,6 +1,6 @@
 // A run under way: how far it is, failures and the front as it grows.
 function progressPart() {
-  const part = laterPart("live", "Progress", "front");
+  const part = laterPart("live", "Progress", "summary");
   const said = element("p", { id: "progress-words", role: "status" }), bar = element("progress", { "aria-label": "share of the simulations" });
   const again = plainButton("", () => location.reload(), { hidden: true, id: "new-front" });
   part.append(said, bar, again);
@@ -26,7 +26,8 @@ function progressPart() {
       `${count(status.failed)} failed; ${count(status.front)} on the front after generation ${Math.max(0, status.generation)}, hypervolume ${status.hypervolume === null ? "\u2013" : show(100 * status.hypervolume)} %`;
     bar.max = status.max_evals;
     bar.value = status.simulated;
-    if (!part.dataset.state) part.hidden = status.state === "finished"; // all of it stands below
+    if (!part.dataset.state) document.querySelector('#parts a[href="#live"]').hidden = part.hidden = status.state === "finished"; // all of it stands below
+    if (!part.dataset.state && status.state === "running" && !run.detail) byId("provenance").before(byId("summary")); // it waits
     part.dataset.state = status.state;
     if (status.generation === generation) return;
     generation = status.generation;

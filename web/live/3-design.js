@@ -8,12 +8,10 @@ function detailOf(id) {
   return details.get(id);
 }
 
-drawerMore.detail = (row) => detailOf(ids[row]).then(({ detail, objectives: raw }) => ({ ...detail, raw }));
-drawerMore.buttons = (row, d) => [
-  whatIfButton(row),
-  plainButton("Compare", () => compare({ name: `design ${ids[row]}`, raw: d.raw, gap_m: d.gap_m, peaks: d.with_core }), { disabled: !d?.raw })];
+drawerMore.detail = (row) => detailOf(ids[row]).then(({ detail }) => detail);
 drawerMore.rest = (host, d) => detailParts(folded(host, "Forces, energies and more"), d, true);
 
+storeKept = (x) => ask("kept", { x });
 // What cannot be written stays in its field, with the reason.
 drawerMore.takeNote = (id, field) => ask("notes", { id, text: field.value.trim() }).then((notes) => {
   run.notes = notes;
@@ -32,8 +30,7 @@ async function completeSummary() {
     host.append(element("h1", { id: "title" }));
     summaryPart();
   });
-  byId("overlays").replaceWith(overlayLegend());
-  layoutChanged();
+  overlaysChanged();
 }
 
 // Which variables matter is found when its part is opened.
