@@ -144,31 +144,56 @@ TEST(a_scene_of_bytes_has_the_matrices_records_and_settings_of_the_files)
     free(bytes);
 }
 
-TEST(forty_designs_simulated_by_the_page_of_a_report_are_those_of_the_program)
+/* n designs of so many floors; of the first three no gap closes. */
+static void write_designs(const char *name, int floors, int n)
 {
-    char command[1024];
+    char path[1024];
     uint64_t x = 7;
-    if (system("command -v node >/dev/null") != 0)
-        skip();
-    expect(0, "", "optimize configs/quick.ini --max-evals 24 --set sim.duration_s=20 --out @/run");
-    expect(0, "", "report @/run --out @/run.html");
-    snprintf(command, sizeof command, "%s/forty.csv", place.folder);
-    FILE *f = fopen(command, "w");
+    snprintf(path, sizeof path, "%s/%s", place.folder, name);
+    FILE *f = fopen(path, "w");
     assert_non_null(f);
-    for (int j = 0; j < 20; j++)
+    for (int j = 0; j < floors; j++)
         fprintf(f, "gap_%02d_m,", j + 1);
     fputs("t_base_m,t_top_m\n", f);
-    for (int i = 0; i < 40; i++) {
-        for (int j = 0; j < 20; j++)
-            fprintf(f, "%.6f,", i < 3 ? 4 : 0.02 * pow(25, next(&x))); /* of the first three none closes */
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < floors; j++)
+            fprintf(f, "%.6f,", i < 3 ? 4 : 0.02 * pow(25, next(&x)));
         fprintf(f, "%.6f,%.6f\n", 0.01 + 0.02 * next(&x), 0.008);
     }
     fclose(f);
+}
+
+/* By the page of the run's report, and by the program. */
+static void expect_alike(const char *run)
+{
+    char command[1024];
+    if (system("command -v node >/dev/null") != 0)
+        skip();
+    snprintf(command, sizeof command, "report @/%s --out @/%s.html", run, run);
+    expect(0, "", command);
     snprintf(command, sizeof command,
-             "d='%s'; node tests/engine/forty.mjs '%s' $d/run.html $d/forty.csv $d/run/settings.ini >$d/said 2>&1 || { "
-             "cat $d/said; exit 1; }; cat $d/said",
-             place.folder, getenv("IMTET"));
+             "d='%s/%s'; node tests/engine/forty.mjs '%s' $d.html $d.csv $d/settings.ini >$d.said 2>&1 || { "
+             "cat $d.said; exit 1; }; cat $d.said",
+             place.folder, run, getenv("IMTET"));
     assert_int_equal(system(command), 0);
+}
+
+TEST(forty_designs_simulated_by_the_page_of_a_report_are_those_of_the_program)
+{
+    expect(0, "", "optimize configs/quick.ini --max-evals 24 --set sim.duration_s=20 --out @/run");
+    write_designs("run.csv", 20, 40);
+    expect_alike("run");
+}
+
+TEST(by_all_records_with_their_rates_the_page_finds_the_annual_loss_of_the_program)
+{
+    expect(0, "",
+           "optimize configs/quick.ini " SIX_FLOORS "--max-evals 16 --set search.initial=12 --set search.population=8 "
+           "--set sim.duration_s=8 --set 'motion.record=builtin:elcentro-like factor=0.5 rate=0.02' --set "
+           "'motion.records=builtin:sylmar-like factor=1.5 rate=7e-4' --set motion.pga_g=0 --set sim.robust=mean --set "
+           "search.objectives=annual_loss,j1_m,mcore_kg --out @/year");
+    write_designs("year.csv", 6, 8);
+    expect_alike("year");
 }
 
 SUITE(make_place, clear_place)

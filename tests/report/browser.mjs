@@ -126,8 +126,7 @@ export async function openBrowser({ program = "chromium", width = 1360, height =
   }
 
   async function close() {
-    await send("Browser.close").catch(() => {});
-    await gone;
+    await send("Browser.close").catch(() => {}); await gone;
     rmSync(profile, { recursive: true, force: true, maxRetries: 5 });
   }
   return { openPage, close, send };

@@ -35,8 +35,7 @@ async function open(hash = "", path = file) {
 
 const frame = () => page.evaluate("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done))))");
 async function settle() {
-  await page.until("!document.documentElement.dataset.busy");
-  await frame();
+  await page.until("!document.documentElement.dataset.busy"); await frame();
 }
 const { mouse, boxOf } = page;
 
@@ -47,8 +46,7 @@ async function drag(box, from, to, steps = 6) {
     const s = k / steps;
     await mouse("mouseMoved", ...at([from[0] + s * (to[0] - from[0]), from[1] + s * (to[1] - from[1])]));
   }
-  await mouse("mouseReleased", ...at(to));
-  await settle();
+  await mouse("mouseReleased", ...at(to)); await settle();
 }
 
 const click = (selector, nth) => page.click(selector, nth).then(settle);
@@ -56,8 +54,7 @@ const press = (key) => page.press(key).then(settle);
 
 async function type(label, text) {
   await page.evaluate(`(() => { const e = document.querySelector('input[aria-label="${label}"]'); e.closest("details").open = true; e.focus(); e.select(); })()`);
-  await page.call("Input.insertText", { text });
-  await press("Enter");
+  await page.call("Input.insertText", { text }); await press("Enter");
 }
 
 const headingOf = (name) => `.heading[data-name="${name}"]`;
@@ -104,16 +101,13 @@ const tried = {
     for (const id of await tableIds()) assert.ok(ids.has(id), `design ${id} is in the table`);
   },
   async "Clear ranges brings every design back"() {
-    await click("#clear");
-    assert.equal(await counted(), rows.length);
-    assert.equal(await downloaded(), csvOf(all));
+    await click("#clear"); assert.equal(await counted(), rows.length); assert.equal(await downloaded(), csvOf(all));
   },
   async "a range typed on the keyboard selects the same as a search through the file"() {
     const column = 1 + run.schema.variables.length, values = rows.map((r) => r[column]).sort((a, b) => a - b);
     const low = +values[Math.floor(values.length / 4)].toPrecision(4), high = +values[Math.floor(values.length / 2)].toPrecision(4);
     const label = await page.evaluate("document.querySelector('#ranges input[type=text]').getAttribute('aria-label').replace(/ from$/, '')");
-    await type(`${label} from`, String(low));
-    await type(`${label} to`, String(high));
+    await type(`${label} from`, String(low)); await type(`${label} to`, String(high));
     const chosen = all.filter((i) => rows[i][column] >= low && rows[i][column] <= high);
     assert.equal(await counted(), chosen.length);
     assert.equal(await downloaded(), csvOf(chosen));
@@ -146,22 +140,18 @@ const tried = {
   async "a title dragged sideways moves its axis, down turns it over, up hides it"() {
     const names = results;
     if (names.length < 3) return;
-    await dragTitle(names[0], 1.2, 0);
-    assert.deepEqual(await shownAxes(), [names[1], names[0], ...names.slice(2)]);
+    await dragTitle(names[0], 1.2, 0); assert.deepEqual(await shownAxes(), [names[1], names[0], ...names.slice(2)]);
     const before = await page.evaluate(tickPlace(names[0]));
     await dragTitle(names[0], 0, 90);
     const after = await page.evaluate(tickPlace(names[0]));
     assert.ok(Math.sign(before) === -Math.sign(after), `${names[0]} is turned over: ${before}, ${after}`);
-    await dragTitle(names[0], 0, -60);
-    assert.deepEqual(await shownAxes(), names.slice(1));
-    await click("input[name=axes][value=objectives]");
-    assert.deepEqual(await shownAxes(), names);
+    await dragTitle(names[0], 0, -60); assert.deepEqual(await shownAxes(), names.slice(1));
+    await click("input[name=axes][value=objectives]"); assert.deepEqual(await shownAxes(), names);
   },
   async "keys move, turn over and hide an axis, and open its menu"() {
     const names = results, focus = (name) => page.evaluate(`document.querySelector(${JSON.stringify(headingOf(name))}).focus()`);
     if (names.length < 3) return;
-    await focus(names[0]);
-    await press("ArrowRight");
+    await focus(names[0]); await press("ArrowRight");
     assert.deepEqual(await shownAxes(), [names[1], names[0], ...names.slice(2)]);
     await press("l"); // the focus went with it
     assert.match(decodeURIComponent(await page.evaluate("location.hash")), new RegExp(`log=${names[0]}`));
@@ -170,13 +160,11 @@ const tried = {
     await press("p"); // by percentiles: ticks are values of designs, as many between any two
     assert.match(decodeURIComponent(await page.evaluate("location.hash")), new RegExp(`percent=${names[0]}`));
     assert.ok((await ticks()).length > 2);
-    await press("p");
-    await press("Enter");
+    await press("p"); await press("Enter");
     assert.equal(await page.evaluate("document.querySelectorAll('#axis-menu:not([hidden]) [role=menuitem]').length"), 7);
     await press("Escape");
     assert.equal(await page.evaluate("document.getElementById('axis-menu').hidden && document.activeElement.dataset.name"), names[0]);
-    await press("Delete");
-    assert.deepEqual(await shownAxes(), names.slice(1));
+    await press("Delete"); assert.deepEqual(await shownAxes(), names.slice(1));
     await click("input[name=axes][value=objectives]");
   },
   async "the pointer on a line, a dot or a row shows its design in all three, a click marks it"() {
@@ -204,18 +192,14 @@ const tried = {
     await drag(box, [0.5, 0.45], [0.5, 1]);
     const inside = await counted();
     assert.ok(inside > 0 && inside < rows.length);
-    await click("#keep");
-    assert.equal(await counted(), inside);
+    await click("#keep"); assert.equal(await counted(), inside);
     assert.match(await page.evaluate("document.getElementById('count').textContent"), new RegExp(`${inside.toLocaleString("en-US")} of ${inside.toLocaleString("en-US")} .*${(rows.length - inside).toLocaleString("en-US")} put aside`));
-    await click("#restore");
-    assert.equal(await counted(), rows.length);
+    await click("#restore"); assert.equal(await counted(), rows.length);
     await drag(await boxOf("g.axis .brush .overlay", 0), [0.5, 0.45], [0.5, 1]);
     const again = await counted();
-    await click("#exclude");
-    assert.equal(await counted(), rows.length - again);
+    await click("#exclude"); assert.equal(await counted(), rows.length - again);
     assert.equal((await downloaded()).trim().split("\n").length - 1, rows.length - again);
-    await click("#restore");
-    assert.equal(await counted(), rows.length);
+    await click("#restore"); assert.equal(await counted(), rows.length);
   },
   async "the address carries axes, ranges, steps and colours to another window"() {
     const names = results;
@@ -228,13 +212,11 @@ const tried = {
     assert.deepEqual(await shownAxes(), [names[1], names[0]]);
     assert.deepEqual(await page.evaluate("['x', 'y', 'colour'].map((id) => document.getElementById(id).selectedIndex)"), [1, 0, 0]);
     assert.equal(new URLSearchParams((await page.evaluate("location.hash")).slice(1)).get("axes"), `-${names[1]},${names[0]}`);
-    await open();
-    assert.equal(await counted(), rows.length);
+    await open(); assert.equal(await counted(), rows.length);
   },
   async "any two columns are plotted against each other, a box there selects"() {
     await page.evaluate(`(() => { for (const [id, k] of [["x", ${results.length}], ["y", 0]]) { const e = document.getElementById(id); e.selectedIndex = k; e.dispatchEvent(new Event("change")); } })()`);
-    await settle();
-    await drag(await boxOf("g.panel .brush .overlay", 0), [0.02, 0.98], [0.6, 0.3]);
+    await settle(); await drag(await boxOf("g.panel .brush .overlay", 0), [0.02, 0.98], [0.6, 0.3]);
     const text = await downloaded(), chosen = all.filter((i) => text.includes(`\n${lines[i]}\n`)), ranges = new URLSearchParams((await page.evaluate("location.hash")).slice(1)).get("in") ?? "";
     assert.ok(ranges.includes(run.schema.variables[0]) && ranges.includes(run.schema.objectives[0].name), ranges);
     assert.equal(chosen.length, await counted());
@@ -293,8 +275,7 @@ const tried = {
     await open();
   },
   async "a click opens the design beside the picture, which stays; Escape closes"() {
-    await page.evaluate("document.querySelector('#designs').scrollIntoView({ block: 'center' })");
-    await settle();
+    await page.evaluate("document.querySelector('#designs').scrollIntoView({ block: 'center' })"); await settle();
     const top = "document.querySelectorAll('#designs td button')[2].getBoundingClientRect().top", before = await page.evaluate(top), id = +(await page.evaluate("document.querySelectorAll('#designs td button')[2].textContent"));
     await page.evaluate("(() => { const b = document.querySelectorAll('#designs td button')[2]; b.focus({ preventScroll: true }); b.click(); })()");
     await page.until(`document.getElementById("drawer").dataset.id === "${id}"`);
@@ -313,15 +294,11 @@ const tried = {
       if (!(await page.evaluate(`Boolean(document.querySelector("#${table} td button"))`))) continue;
       const wanted = `${table},${await page.evaluate(`document.querySelector("#${table} td button").textContent`)}`;
       await page.evaluate(`document.querySelector("#${table} td button").focus({ preventScroll: true })`);
-      await page.evaluate("document.querySelector('input[name=axes][value=all]').click()");
-      await settle();
+      await page.evaluate("document.querySelector('input[name=axes][value=all]').click()"); await settle();
       assert.equal(await page.evaluate(focused), wanted);
       await page.evaluate("document.activeElement.dispatchEvent(new KeyboardEvent('keydown', { key: 'z', ctrlKey: true, bubbles: true }))");
-      await settle();
-      assert.equal(await page.evaluate(focused), wanted);
-      await page.evaluate("document.activeElement.click()");
-      await settle();
-      await press("Escape");
+      await settle(); assert.equal(await page.evaluate(focused), wanted);
+      await page.evaluate("document.activeElement.click()"); await settle(); await press("Escape");
       assert.equal(await page.evaluate(focused), wanted);
     }
     await page.evaluate("document.getElementById('choose-by-weights-or-a-reference-point')?.removeAttribute('open')");
@@ -337,8 +314,7 @@ const tried = {
       return document.getElementById("drawer").hidden ? "" : [id, document.getElementById("drawer").dataset.wanted].join();
     })()`);
     assert.ok(rows.some((r) => `${r[0]},${r[0]}` === id), id);
-    await press("Escape");
-    await press("Escape");
+    await press("Escape"); await press("Escape");
   },
   async "an address that no page wrote leaves a page that is drawn"() {
     await open(`#in=%25&axes=%25&x=%E0%A4%A&weights=%25:3&steps=%2B%25:1:2`);
@@ -359,24 +335,18 @@ const tried = {
   },
   async "undo goes back by one step, as the address tells"() {
     const hash = () => page.evaluate("location.hash"), before = await hash(), axes = await shownAxes();
-    await click("input[name=axes][value=variables]");
-    assert.notDeepEqual(await shownAxes(), axes);
-    await click("#undo");
-    assert.deepEqual([await hash(), await shownAxes()], [before, axes]);
+    await click("input[name=axes][value=variables]"); assert.notDeepEqual(await shownAxes(), axes);
+    await click("#undo"); assert.deepEqual([await hash(), await shownAxes()], [before, axes]);
   },
   async "dark is dark, on canvases too, and paper stays white"() {
     const paper = () => page.evaluate("getComputedStyle(document.querySelector('section')).backgroundColor"), light = await paper();
     const mean = () => page.evaluate("document.querySelectorAll('#front canvas')[2].toDataURL()"), ink = await mean();
-    await click("#theme");
-    await settle();
+    await click("#theme"); await settle();
     assert.ok(light === "rgb(255, 255, 255)" && (await paper()) !== light && (await mean()) !== ink);
     assert.match(await page.evaluate("location.hash"), /theme=dark/);
-    await page.evaluate("window.dispatchEvent(new Event('beforeprint'))");
-    assert.equal(await paper(), light);
-    await page.evaluate("window.dispatchEvent(new Event('afterprint'))");
-    assert.notEqual(await paper(), light);
-    await click("#theme");
-    assert.equal(await paper(), light);
+    await page.evaluate("window.dispatchEvent(new Event('beforeprint'))"); assert.equal(await paper(), light);
+    await page.evaluate("window.dispatchEvent(new Event('afterprint'))"); assert.notEqual(await paper(), light);
+    await click("#theme"); assert.equal(await paper(), light);
   },
   async "no letter is smaller than 12 px"() {
     const small = await page.evaluate(`Array.from(document.querySelectorAll("svg text, svg tspan, small, kbd, button, td, p, .card div, span")).filter((e) => e.getClientRects().length && e.textContent && parseFloat(getComputedStyle(e).fontSize) < 12).map((e) => e.textContent).slice(0, 5)`);
@@ -456,14 +426,11 @@ async function measure() {
   const paint = await page.evaluate("performance.getEntriesByName('first-contentful-paint')[0].startTime");
   const [front, whole] = await page.evaluate("['front drawn', 'all drawn'].map((name) => performance.getEntriesByName(name)[0].startTime)");
   const box = await boxOf("g.axis .brush .overlay", 1);
-  await page.evaluate(listenForMoves);
-  await mouse("mousePressed", box.x + box.width / 2, box.y + 0.1 * box.height);
+  await page.evaluate(listenForMoves); await mouse("mousePressed", box.x + box.width / 2, box.y + 0.1 * box.height);
   for (let k = 1; k <= 40; k++) {
-    await mouse("mouseMoved", box.x + box.width / 2, box.y + (0.1 + 0.02 * k) * box.height);
-    await frame();
+    await mouse("mouseMoved", box.x + box.width / 2, box.y + (0.1 + 0.02 * k) * box.height); await frame();
   }
-  await mouse("mouseReleased", box.x + box.width / 2, box.y + 0.9 * box.height);
-  await settle();
+  await mouse("mouseReleased", box.x + box.width / 2, box.y + 0.9 * box.height); await settle();
   const times = (await page.evaluate("window.times")).sort((a, b) => a - b);
   const ms = (v) => `${Math.round(v)} ms`;
   console.log(`${rows.length} designs, ${(html.length / 1e6).toFixed(1)} MB: first paint ${ms(paint)}, front drawn ${ms(front)}, all drawn ${ms(whole)}; ` +
@@ -487,7 +454,6 @@ export async function tryReports(paths) {
 
 if (process.argv[2] === "--bench") {
   read(process.argv[3]);
-  await open();
-  await measure().finally(browser.close);
+  await open(); await measure().finally(browser.close);
   rmSync(downloads, { recursive: true });
 }

@@ -49,15 +49,12 @@ const designShown = (id) => until(`document.getElementById("drawer").dataset.id 
 // Drags a slider to and fro; updates that came and how long each took from the movement to the frame with its picture.
 async function dragSlider(nth, moves) {
   const { x, y, width, height } = await boxOf(".slider input[type=range]", nth), middle = y + height / 2;
-  await page.evaluate("performance.clearMeasures('what-if')");
-  await mouse("mousePressed", x + width / 2, middle);
+  await page.evaluate("performance.clearMeasures('what-if')"); await mouse("mousePressed", x + width / 2, middle);
   for (let k = 0; k < moves; k++) {
-    await mouse("mouseMoved", x + width * (0.5 + 0.4 * Math.sin(k / 4)), middle);
-    await pause(40);
+    await mouse("mouseMoved", x + width * (0.5 + 0.4 * Math.sin(k / 4)), middle); await pause(40);
   }
   await mouse("mouseReleased", x + width / 2, middle);
-  await until("!document.getElementById('what-if').dataset.busy");
-  await pause(100);
+  await until("!document.getElementById('what-if').dataset.busy"); await pause(100);
   return page.evaluate("performance.getEntriesByName('what-if').map((m) => m.duration)");
 }
 
@@ -83,21 +80,17 @@ async function benchSlider(what, nth, moves) {
 async function takePictures() {
   await open("kobe");
   await until("document.getElementById('what-if').dataset.turn && document.querySelector('#summary .chart svg')");
-  await dragSlider(10, 16);
-  await click("#keep-trial");
-  await picture(page, join(pictures, "serve-what-if.jpg"), "#what-if");
-  await click("#kept li button");
+  await dragSlider(10, 16); await click("#keep-trial");
+  await picture(page, join(pictures, "serve-what-if.jpg"), "#what-if"); await click("#kept li button");
   await click("#designs tbody td button", 1);
   await until("document.getElementById('drawer').dataset.id && !document.querySelector('#drawer .bar + .bar button:nth-child(2)').disabled && document.querySelectorAll('#drawer svg').length >= 4");
-  await picture(page, join(pictures, "serve-design.jpg"));
-  await click("#drawer .bar + .bar button", 1);
+  await picture(page, join(pictures, "serve-design.jpg")); await click("#drawer .bar + .bar button", 1);
   await until("document.querySelectorAll('#compared tbody tr').length === 2");
   await picture(page, join(pictures, "serve-compare.jpg"), "#compare", 900);
   const live = start("optimize", "configs/quick.ini", "--threads", "1", "--out", join(root, "quick"));
   live.stdout.resume();
   while (!(await runs()).some((r) => r.name === "quick")) await pause(50);
-  await open("quick");
-  await until("+document.getElementById('live').dataset.generation > 5", 60);
+  await open("quick"); await until("+document.getElementById('live').dataset.generation > 5", 60);
   await picture(page, join(pictures, "serve-live.jpg"), "#live");
 }
 
@@ -113,8 +106,7 @@ const tried = {
       if (stored()) break;
     }
     const first = stored() - 1, shows = (generation) => until(`+document.getElementById("live").dataset.generation >= ${generation}`);
-    await open("live");
-    await shows(first);
+    await open("live"); await shows(first);
     assert.equal(await page.evaluate("document.getElementById('live').dataset.state"), "running");
     await page.evaluate(`(() => { const part = document.getElementById("live"); window.seen = [+part.dataset.generation];
       new MutationObserver(() => window.seen.at(-1) === +part.dataset.generation || window.seen.push(+part.dataset.generation)).observe(part, { attributeFilter: ["data-generation"] }); })()`);
@@ -122,21 +114,18 @@ const tried = {
     await live.ended;
     const last = seen().at(-1);
     assert.ok(last > first, `generation ${last} after ${first}`);
-    await shows(last);
-    await until("document.getElementById('live').dataset.state === 'finished'");
+    await shows(last); await until("document.getElementById('live').dataset.state === 'finished'");
     const shown = await page.evaluate("window.seen"); // one that was passed over shows with a later one
     assert.deepEqual(shown, [...new Set(shown)].sort((a, b) => a - b));
     assert.match(await page.evaluate("document.getElementById('progress-words').textContent"), /^Finished: 100 of 100 designs simulated; 0 failed/);
-    await until("!document.getElementById('new-front').hidden");
-    await click("#new-front");
+    await until("!document.getElementById('new-front').hidden"); await click("#new-front");
     await until("document.documentElement?.dataset.ready === 'yes' && document.getElementById('new-front')?.hidden");
   },
   async "a click on a row, a line and a dot opens that design"() {
     await open("a");
     await until("document.querySelector('#summary .warnings')"); // the knee in detail
     const id = await page.evaluate("document.querySelectorAll('#designs tbody tr')[1].dataset.id");
-    await click("#designs tbody td button", 1);
-    await designShown(id);
+    await click("#designs tbody td button", 1); await designShown(id);
     assert.match(await page.evaluate("document.querySelector('#drawer h2').textContent"), new RegExp(`^Design ${id}\\b`));
     assert.ok((await page.evaluate("document.querySelectorAll('#drawer svg').length")) >= 4, "gaps and peaks");
     for (const picture of ["#front .layers", "#front .grid2 .layers"]) {
@@ -146,16 +135,14 @@ const tried = {
         await mouse("mouseMoved", ...at, 0);
         name = await page.evaluate(`document.getElementById("tip").hidden || (${picture === "#front .layers"} && document.elementFromPoint(${at}).closest(".brush")) ? "" : document.querySelector("#tip strong").textContent`);
         if (!name) continue;
-        await mouse("mousePressed", ...at);
-        await mouse("mouseReleased", ...at);
+        await mouse("mousePressed", ...at); await mouse("mouseReleased", ...at);
         break;
       }
       await designShown(name.match(/^Design (\d+)/)[1]);
     }
   },
   async "a slider changes peaks and place while it is dragged"() {
-    await open("a");
-    await until("document.getElementById('what-if').dataset.turn");
+    await open("a"); await until("document.getElementById('what-if').dataset.turn");
     const before = await page.evaluate("document.querySelector('#trial tbody').textContent");
     tell("a gap dragged", await dragSlider(10, 8));
     tell("a thickness dragged", await dragSlider(3, 5)); // a gap may be one that never closes
@@ -163,8 +150,7 @@ const tried = {
     assert.match(await page.evaluate("document.getElementById('place').textContent"), /ominated/);
     tell("the peak of the motion dragged", await dragSlider(0, 5));
     assert.match(await page.evaluate("document.getElementById('place').textContent"), /motion or restitution differ/);
-    await click("#back");
-    await until("/Nondominated/.test(document.getElementById('place').textContent)");
+    await click("#back"); await until("/Nondominated/.test(document.getElementById('place').textContent)");
   },
   async "a slider is moved by the keyboard"() {
     const turn = await page.evaluate("+document.getElementById('what-if').dataset.turn");
@@ -179,8 +165,7 @@ const tried = {
     await browser.send("Browser.setDownloadBehavior", { behavior: "allow", downloadPath: downloads });
     await click("#keep-trial");
     await page.evaluate("(() => { const s = document.querySelectorAll('.slider input[type=range]')[7]; s.value = +s.min + 0.3 * (s.max - s.min); s.dispatchEvent(new Event('input')); })()");
-    await until("!document.getElementById('what-if').dataset.busy");
-    await click("#keep-trial");
+    await until("!document.getElementById('what-if').dataset.busy"); await click("#keep-trial");
     await click("#save-kept");
     let name;
     for (let k = 0; k < 250 && !name; k++, await pause(20)) name = readdirSync(downloads).find((f) => f.endsWith("-kept.csv"));
@@ -203,8 +188,7 @@ const tried = {
   async "what is kept is a design of the run, of a kind of its own, and comes back with the page"() {
     const rows = () => execFileSync(imtet, ["export", join(root, "a"), "--all", "--csv", "-"], { encoding: "utf8" }).trim().split("\n").filter((row) => row.split(",")[2] === "kept");
     const told = "Array.from(document.querySelectorAll('#kept li'), (li) => li.textContent).join('|')", before = rows().length;
-    await click("#keep-trial");
-    await until(`/design \\d+ of the run[^|]*$/.test(${told})`);
+    await click("#keep-trial"); await until(`/design \\d+ of the run[^|]*$/.test(${told})`);
     const last = rows().at(-1).split(","), j1 = await page.evaluate(`${told}.split("|").at(-1)`);
     assert.equal(rows().length, before + 1);
     assert.ok(j1.includes(`design ${last[0]} of the run`), j1);
@@ -216,8 +200,7 @@ const tried = {
     await click("#kept li button");
     const open = "document.getElementById('drawer').dataset.id"; // the table may move below the pointer as the list above it shrinks
     for (let tries = 0; tries < 4 && !(await page.evaluate(open)); tries++) await click("#designs tbody td button", 1).then(() => until(open, 5)).catch(() => 0);
-    await until(open);
-    await until("!document.querySelector('#drawer .bar + .bar button:nth-child(2)').disabled");
+    await until(open); await until("!document.querySelector('#drawer .bar + .bar button:nth-child(2)').disabled");
     await click("#drawer .bar + .bar button", 1);
     await until("document.querySelectorAll('#compared tbody tr').length === 2");
     const differences = await page.evaluate("Array.from(document.querySelectorAll('#compared .difference'), (e) => e.textContent)");
@@ -269,26 +252,22 @@ const tried = {
       assert.ok((await script.json()).error);
     }
   },
-  async "two runs lie over each other"() {
+  async "runs stand first and lie over each other, and are noted of, renamed and deleted when one confirms it"() {
+    assert.equal(await page.evaluate("Array.from(document.querySelectorAll('main > section'), (s) => s.id).filter((id) => id !== 'live')[0]"), "runs");
     await page.evaluate("document.querySelector('[name=\"compare b\"]').click()");
     await until("document.querySelectorAll('#runs figure svg').length >= 1 && document.querySelector('#runs .strip canvas')");
-  },
-  async "runs stand first, and are noted of, renamed and deleted when one confirms it"() {
-    assert.equal(await page.evaluate("Array.from(document.querySelectorAll('main > section'), (s) => s.id).filter((id) => id !== 'live')[0]"), "runs");
-    const button = (name, word) => page.evaluate(`Array.from(document.querySelectorAll("#all-runs tr")).find((tr) => tr.cells[1].textContent === "${name}").querySelectorAll("button")[${word === "Delete" ? 1 : 0}].click()`);
-    const names = async () => (await runs()).map((r) => r.name), answers = (yes) => page.evaluate(`[window.prompt, window.confirm] = [() => "renamed", () => ${yes}]`);
+    const on = (name, act) => page.evaluate(`((tr) => ${act})(Array.from(document.querySelectorAll("#all-runs tr")).find((tr) => tr.cells[1].textContent === "${name}"))`), has = (name) => existsSync(join(root, name, "run.sqlite"));
     cpSync(join(root, "c"), join(root, "spare"), { recursive: true });
-    await open("a");
-    await until("document.getElementById('all-runs')");
-    await answers(false);
-    await button("spare", "Delete");
-    await button("spare", "Rename");
+    await open("a"); await until("document.getElementById('all-runs')");
+    await page.evaluate("[window.prompt, window.confirm] = [() => 'renamed', () => window.sure]");
+    await on("spare", "tr.querySelectorAll('button')[1].click()"); // not confirmed
+    await on("spare", "tr.querySelectorAll('button')[0].click()");
     await until("/renamed/.test(document.getElementById('all-runs').textContent)");
-    assert.ok((await names()).includes("renamed") && !(await names()).includes("spare") && existsSync(join(root, "renamed", "run.sqlite")));
-    await page.evaluate("(() => { const e = document.querySelector('[aria-label=\"note on renamed\"]'); e.value = 'a try'; e.dispatchEvent(new Event('change')); })()");
-    await until("(async () => (await (await fetch('../runs')).json()).find((r) => r.name === 'renamed').note === 'a try')()");
-    await answers(true);
-    await button("renamed", "Delete");
+    assert.deepEqual([has("spare"), has("renamed")], [false, true]);
+    await on("renamed", "((e) => { e.value = 'a try'; e.dispatchEvent(new Event('change')); })(tr.querySelector('[type=text]'))");
+    for (let k = 0; k < 100 && (await runs()).find((r) => r.name === "renamed").note !== "a try"; k++) await pause(50);
+    assert.equal((await runs()).find((r) => r.name === "renamed").note, "a try");
+    await page.evaluate("window.sure = true"); await on("renamed", "tr.querySelectorAll('button')[1].click()");
     await until("!/renamed/.test(document.getElementById('all-runs').textContent)");
     assert.ok(!existsSync(join(root, "renamed")));
   },
@@ -306,16 +285,14 @@ const tried = {
     await page.evaluate("document.querySelector('#designs tbody button').click()");
     const id = await page.evaluate("document.querySelector('#designs tbody tr').dataset.id");
     assert.deepEqual(await write("for the client"), { [id]: "for the client" });
-    await open("a");
-    await page.evaluate("document.querySelector('#designs tbody button').click()");
+    await open("a"); await page.evaluate("document.querySelector('#designs tbody button').click()");
     assert.equal(await page.evaluate(`${field}.value`), "for the client");
     assert.match(await page.evaluate("document.querySelector('#designs tbody tr').title"), /for the client/);
     assert.deepEqual(await write(" "), {});
     rmSync(path);
   },
   async "the first screen keeps its place when what is compared with arrives"() {
-    await open("b");
-    await until("document.getElementById('all-runs')");
+    await open("b"); await until("document.getElementById('all-runs')");
     const top = "document.getElementById('front').getBoundingClientRect().top + scrollY", before = await page.evaluate(`document.querySelector("#summary .skeleton") ? ${top} : 0`);
     await until("document.querySelector('#summary .warnings')");
     if (before) assert.ok(Math.abs((await page.evaluate(top)) - before) <= 60, `${before} px, then ${await page.evaluate(top)} px`);
@@ -338,8 +315,7 @@ const tried = {
     }
   },
   async "which variables matter is found when its part is opened, as in the report"() {
-    await open("a");
-    await page.evaluate("document.getElementById('which-variables-matter').open = true");
+    await open("a"); await page.evaluate("document.getElementById('which-variables-matter').open = true");
     await page.until("document.querySelector('#which-variables-matter figure svg')");
     const html = join(folder, "a.html");
     execFileSync(imtet, ["report", join(root, "a"), "--out", html]);
@@ -347,25 +323,21 @@ const tried = {
     assert.deepEqual(await page.evaluate("fetch('importance').then((answer) => answer.json())"), report.importance);
   },
   async "a run that judges designs by several simulations has its page, and what-if asks for all of them"() {
-    await open("d");
-    await until("document.querySelector('[name=whole]')");
+    await open("d"); await until("document.querySelector('[name=whole]')");
     const said = "document.getElementById('place').textContent";
     await until(`/^Not comparable/.test(${said})`);
-    await page.evaluate("document.querySelector('[name=whole]').click()");
-    await until(`/ominated/.test(${said})`);
+    await page.evaluate("document.querySelector('[name=whole]').click()"); await until(`/ominated/.test(${said})`);
   },
   async "a run of another problem has its front, its progress and no sliders"() {
     if (!(await runs()).some((r) => r.name === "c")) return;
-    await open("c");
-    await until("document.getElementById('live').dataset.state === 'finished'");
+    await open("c"); await until("document.getElementById('live').dataset.state === 'finished'");
     assert.equal(await page.evaluate("document.querySelectorAll('#what-if').length"), 0);
   },
   async "the browser complains of nothing and asks no one else"() {
     assert.deepEqual(page.complaints((asked) => asked.startsWith(origin)), []);
   },
   async "forty designs simulated by the page are those of the program"() {
-    await open("a");
-    await until("document.getElementById('what-if').dataset.turn");
+    await open("a"); await until("document.getElementById('what-if').dataset.turn");
     const scene = await page.evaluate("fetch('scene').then((answer) => answer.json())"), designs = join(folder, "forty.csv");
     const head = await page.evaluate("JSON.parse(document.getElementById('run').textContent).schema.variables");
     const rows = Array.from({ length: 40 }, (_, i) => head.map((name, j) => scene.lower[j] * (scene.upper[j] / scene.lower[j]) ** ((i * 0.618 + j * 0.382) % 1)));
@@ -373,8 +345,7 @@ const tried = {
     tell(await compare(imtet, designs, join(root, "a", "settings.ini"), (question) => page.evaluate(`imtet.simulate(${JSON.stringify(question)})`)), []);
   },
   async "when the server has gone, the page goes on simulating"() {
-    await open("a");
-    await until("document.querySelector('#trial tbody')");
+    await open("a"); await until("document.querySelector('#trial tbody')");
     children[0].kill("SIGINT");
     await children[0].ended;
     const turn = await page.evaluate("+document.getElementById('what-if').dataset.turn");
@@ -385,12 +356,12 @@ const tried = {
     const html = (more) => (execFileSync(imtet, ["report", join(root, "a"), "--out", join(folder, "offline.html"), ...more]), pathToFileURL(join(folder, "offline.html")).href), saved = join(folder, "downloads", "a-kept.html");
     const keptNow = () => page.evaluate("[document.querySelectorAll('#kept li').length, [...document.querySelectorAll('#kept li')].at(-1)?.textContent, [...document.querySelectorAll('#overlays label')].filter((e) => /^kept/.test(e.textContent)).length].join('|')");
     const save = async () => {
-      await click("#save-page");
-      for (let k = 0; k < 250 && !existsSync(saved); k++) await pause(20);
+      for (let k = +(await click("#save-page"), 0); k < 250 && !existsSync(saved); k++) await pause(20);
       return readFileSync(saved, "utf8");
     };
     await page.call("Page.navigate", { url: html([]) });
     await until("document.getElementById('what-if')?.dataset.turn");
+    page.events.length = 0;
     assert.match(await page.evaluate("document.getElementById('place').textContent"), /ominated/);
     await click("#keep-trial");
     const before = await keptNow(), text = await save();
@@ -417,8 +388,7 @@ setTimeout(() => {
 
 try {
   if (isBench) {
-    await page.call("Performance.enable", { timeDomain: "threadTicks" });
-    await page.call("Page.navigate", { url });
+    await page.call("Performance.enable", { timeDomain: "threadTicks" }); await page.call("Page.navigate", { url });
     await until("document.getElementById('what-if')?.dataset.turn");
     await until("document.querySelector('#summary .chart svg')"); // the knee in detail is done
     for (const [what, nth, moves] of [["a thickness", 3, 60], ["a gap", 10, 60], ["the peak of the motion", 0, 40], ["its stretch", 1, 40]]) await benchSlider(what, nth, moves);
