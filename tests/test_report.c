@@ -542,7 +542,7 @@ TEST(a_dossier_has_the_design_by_fine_and_by_cvode_limits_and_what_is_not_covere
                                         ">builtin:elcentro-like,",
                                         "Against intensity",
                                         "What the figures depend on",
-                                        "no stiffeners",
+                                        "without stiffeners",
                                         "matrices_fnv1a",
                                         "</html>"};
     expect(0, "", "report @/tower --dossier @/dossier.html --record builtin:elcentro-like");

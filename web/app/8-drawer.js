@@ -38,10 +38,10 @@ function difference(value, before, sense) {
   return element("small", { class: `difference ${VERDICT[-Math.sign(sense * pct) || 0][0]}` }, finite(pct) ? `${pct < 0 ? "\u2212" : "+"}${Math.abs(pct).toFixed(Math.abs(pct) < 10 ? 1 : 0)} %` : "");
 }
 
-function numbersOf(row) {
+function numbersOf(row, d) {
   const knee = rowOf.get(run.knee), other = row === knee || knee === undefined ? undefined : knee;
   return table("numbers", ["", "value", ...(other === undefined ? [] : ["from the knee"])], [
-    ...[...results, ...variables].map((c) => line([element("span", { title: c.what }, c.title), [known(c, row), element("small", ` ${c.unit}${atBound(c, c.value[row]) ? ", at a bound" : ""}`)],
+    ...[...results, ...variables.filter((c) => !d?.with_core || c.family.length === 1 || c.words)].map((c) => line([element("span", { title: c.what }, c.title), [known(c, row), element("small", ` ${c.unit}${atBound(c, c.value[row]) ? ", at a bound" : ""}`)],
       ...(other === undefined ? [] : [c.words ? (c.value[row] === c.value[other] ? "" : known(c, other)) : difference(c.value[row], c.value[other], c.sense)])]))]);
 }
 
@@ -62,7 +62,7 @@ function fillDrawer(row, d) {
   const id = ids[row];
   refill(drawer, (host) => {
     host.append(div("bar", element("h2", { id: "drawer-title" }, designName(row)), plainButton("\u00d7", closeDrawer, { "aria-label": "Close (Escape)", id: "close-drawer" })),
-      div("bar", ...(startWhatIf ? [plainButton("What if\u2026", () => startWhatIf(row)), compareButton(designOf(row))] : []), plainButton("Export", () => saveFile(`${run.name}-${id}.csv`, csvOf((i) => i === row)), { title: "its row of front.csv" })), noteOf(id), numbersOf(row));
+      div("bar", ...(startWhatIf ? [plainButton("What if\u2026", () => startWhatIf(row)), compareButton(designOf(row))] : []), plainButton("Export", () => saveFile(`${run.name}-${id}.csv`, csvOf((i) => i === row)), { title: "its row of front.csv" })), noteOf(id), numbersOf(row, d));
     if (d?.reason) host.append(warn(`Not simulated: ${d.reason}`));
     if (d?.waits) host.append(element("p", { class: "note", role: "status" }, "Simulating it for its peaks\u2026"));
     if (d?.with_core) gapFigure(host, d), peakPart(host, d, 240);
