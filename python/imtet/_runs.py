@@ -20,6 +20,7 @@ from ._tables import Tabular
 Records = np.recarray[Any, np.dtype[np.void]]
 
 _MORE_IS_BETTER = {"ed5_10_pct", "edcs_pct", "ed_devices_pct"}  # of a tower's measures
+_OUTSIDE = ("polished", "kept")  # kinds of designs that no search sees
 _ERRORS = {"coarse": 0.08, "standard": 0.01}  # as numbers, by their steps per contact
 _NOT_OF_THE_PROBLEM = ("search.", "run.", "problem.command", "problem.timeout_s", "sim.threads")
 _FILES = ("motion.record", "motion.records", "motion.forces", "building.model")  # told apart by their content
@@ -142,7 +143,7 @@ class Run(Copied, Tabular):
         better = {columns.index(n): k for k, n in enumerate(columns_finer)
                   if n == "violation" or (n in names and n not in self.variables)}
         chosen = [columns.index(n) for n in ("id", "generation", "kind", "outcome", "violation", *names)]
-        kept = sorted((row for row in rows.values() if row[2] is not None), key=lambda row: bool(row[2] == "polished"))
+        kept = sorted((row for row in rows.values() if row[2] is not None), key=lambda row: row[2] in _OUTSIDE)
 
         def value(row: Any, k: int) -> Any:
             fine = finer.get(row[0])
@@ -173,7 +174,7 @@ class Run(Copied, Tabular):
             raise NotImplementedError("the front of a noisy problem has means of evaluations: read front.csv")
         with np.errstate(invalid="ignore"):
             wanted = (d.outcome == "ok") & ~(d.violation > 0)
-        wanted &= np.array([i in self._marks for i in d.id], dtype=bool) | (d.kind == "polished")
+        wanted &= np.isin(d.id, [*self._marks]) | np.isin(d.kind, _OUTSIDE)
         d = d[wanted]
         front: Records = d[self._is_nondominated(d)]
         return front
