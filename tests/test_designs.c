@@ -122,7 +122,7 @@ TEST(evaluate_takes_a_design_from_elsewhere)
                        number(json_object_get(here, "with_core"), "j1_m"));
     json_decref(o);
     json_decref(own);
-    expect(65, "is no design of", "polish @/both --design @/run:knee");
+    expect(65, "is not a design of", "polish @/both --design @/run:knee");
 }
 
 TEST(evaluate_compares_with_devices_and_replicates_have_a_named_deviation)

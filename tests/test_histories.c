@@ -144,7 +144,7 @@ TEST(a_history_reaches_the_peaks_and_its_energies_add_up)
 TEST(options_of_time_files_are_checked_before_the_simulation)
 {
     static const char *const WRONG[][2] = {
-        {"--history @/x.csv --every nan", "--every"},       {"--history @/x.csv --every 1e-9", "no number from"},
+        {"--history @/x.csv --every nan", "--every"},       {"--history @/x.csv --every 1e-9", "not a number"},
         {"--history @/none/x.csv", "none/x.csv"},           {"--contacts @/none/x.csv", "none/x.csv"},
         {"--rigid --contacts @/x.csv", "--contacts needs"}, {"--floor-spectra @/none/x.csv", "none/x.csv"},
     };

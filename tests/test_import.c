@@ -269,7 +269,7 @@ TEST(whatever_is_not_read_is_refused_with_its_line)
     expect(65, "set it to N_m_kg", "building @/model.tcl --set building.units=kN_m_kg");
     expect(66, "nowhere.tcl: there is no such file", "building nowhere.tcl"); /* before it asks for units */
     write_in_place("other.ini", "[problem]\nkind = external\ncommand = true\n");
-    expect(65, "is no tower: ", "building @/other.ini");
+    expect(65, "is not tower: ", "building @/other.ini");
 }
 
 /* A portal of one storey whose columns and beam come in the forms of the table; all are the same frame. */

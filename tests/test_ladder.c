@@ -269,7 +269,7 @@ TEST(the_command_prints_the_ladder_and_refuses_it_where_there_is_no_tower)
     assert_less(0, number(json_object_get(json_object_get(ladder, "by_the_set"), "rigid"), "j1_m"));
     json_decref(o);
     expect_output(": no fault", "check configs/engineer.ini");
-    expect(65, "--ladder: problem.kind is no tower",
+    expect(65, "--ladder: problem.kind is not tower",
            "check configs/quick.ini --ladder --set problem.kind=external --set problem.command=true");
 }
 

@@ -474,7 +474,7 @@ TEST(one_spectral_acceleration_is_a_scaling_at_the_first_period_of_the_building)
     json_decref(b);
     expect(2, "--sa and --pga do not go together", SUITE_LIST "--sa 0.2 --pga 0.3");
     expect(2, "--fragility needs intensities", SUITE_LIST "--sa 0.2 --fragility j3_g=1");
-    expect(2, "is no list of NAME=NUMBER", SUITE_LIST "--sa 0.1:0.1:0.2 --fragility j3_g");
+    expect(2, "is not a list of NAME=NUMBER", SUITE_LIST "--sa 0.1:0.1:0.2 --fragility j3_g");
     expect(2, "drift is no result", SUITE_LIST "--sa 0.1:0.1:0.2 --fragility drift=1");
     expect(2, "neither a probability nor annual_loss is a limit of one simulation",
            SUITE_LIST "--sa 0.1:0.1:0.2 --fragility limits");

@@ -114,9 +114,9 @@ TEST(the_command_stores_its_end_and_refuses_what_is_no_length)
     expect_output("stored in the run as design 41",
                   "simplify @/run --gap-step 10mm --plates 8,12,20,30 --keep j1_m=5%");
     free(output_of("simulate @/s.ini --design @/run:41"));
-    expect(2, "--plates: '0.00001' is no length in mm such as 5 or 5mm, from 0.1 to 10000",
+    expect(2, "--plates: '0.00001' is not a length in mm such as 5 or 5mm, from 0.1 to 10000",
            "simplify @/run --plates 0.00001");
-    expect(2, "--gap-step: 'wide' is no length in mm", "simplify @/run --gap-step wide");
+    expect(2, "--gap-step: 'wide' is not a length in mm", "simplify @/run --gap-step wide");
     expect(2, "--keep: j1_m may lose -0.5 of its value", "simplify @/run --keep j1_m=-0.5");
     expect(2, "--plates: give them in ascending order", "simplify @/run --plates 12,8");
 }

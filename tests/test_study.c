@@ -258,7 +258,7 @@ TEST(a_search_begins_with_given_designs_and_a_front_is_thinned)
     free(output_of("export @/earlier --all --csv @/polished-too.csv"));
     expect_file("polished-too.csv", ",polished,ok,");
     expect(66, "search.start", "optimize @/sphere.ini --out @/no --set search.start=@/nothing");
-    expect(2, "--select: 'many' is no number from 1", "export @/earlier --select many --csv -");
+    expect(2, "--select: 'many' is not a number from 1", "export @/earlier --select many --csv -");
     free(said);
     free(all);
     table_free(&front);

@@ -224,7 +224,7 @@ Status args_number(const Args *args, const char *name, double least, double most
     *value = text ? strtod(text, &end) : otherwise;
     return !text || (end != text && !*end && *value >= least && *value <= most)
                ? STATUS_OK
-               : misused(err, "%s: '%.40s' is no number from %g to %g", name, text, least, most);
+               : misused(err, "%s: '%.40s' is not a number from %g to %g", name, text, least, most);
 }
 
 Status args_whole(const Args *args, const char *name, long least, long most, long otherwise, long *value, Err *err)
@@ -232,7 +232,7 @@ Status args_whole(const Args *args, const char *name, long least, long most, lon
     double number;
     TRY(args_number(args, name, (double)least, (double)most, (double)otherwise, &number, err));
     *value = (long)number;
-    return *value == number ? STATUS_OK : misused(err, "%s: %g is no whole number", name, number);
+    return *value == number ? STATUS_OK : misused(err, "%s: %g is not a whole number", name, number);
 }
 
 Status args_alone(const Args *args, const char *name, const char *others, Err *err)

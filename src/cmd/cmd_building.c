@@ -77,7 +77,7 @@ static Status open_model(const Args *args, Model *m, Err *err)
         TRY(option_put_path(m->s.building.model, name, err));
     TRY(m->has_core ? args_settings(args, &m->s, NULL, NULL, err) : args_apply(args, &m->s, NULL, NULL, err));
     if (m->s.problem.kind != PROBLEM_TOWER)
-        return bad_data(err, "problem.kind: is no tower: %s has no building", name);
+        return bad_data(err, "problem.kind is not tower: %s has no building", name);
     if (args_has(args, "--design") && !m->has_core)
         return misused(err, "--design needs a CONFIG, which has a core");
     TRY(building_load(&m->b, &m->s.building, err));

@@ -550,7 +550,7 @@ static Status run(const Args *args, Err *err)
         if (s.problem.kind == PROBLEM_TOWER)
             check_tower(args, &c, &s);
         else if (args_has(args, "--ladder"))
-            fault(&c, "--ladder: problem.kind is no tower: it has no effects to leave out");
+            fault(&c, "--ladder: problem.kind is not tower: it has no effects to leave out");
         else if (json_array_size(c.faults) == 0)
             open_study(&c, &s, NULL);
         status = give(args, &c, err);

@@ -345,7 +345,7 @@ static Status evaluate(const Args *args, Settings *s, Chosen *c, Err *err)
 
 static Status is_no_tower(Err *err)
 {
-    return bad_data(err, "problem.kind: is no tower but another problem: no ground motion applies");
+    return bad_data(err, "problem.kind is not tower: it has no ground motion");
 }
 
 /* word: of the run's designs, or one from elsewhere. */

@@ -14,7 +14,7 @@ static Status take_mm(const char *option, const char *text, double *value, Err *
     char *end;
     const double mm = strtod(text, &end);
     if (end == text || (*end && strcmp(end, "mm") != 0) || !(mm >= 0.1 && mm <= 1e4))
-        return misused(err, "%s: '%.40s' is no length in mm such as 5 or 5mm, from 0.1 to 10000", option, text);
+        return misused(err, "%s: '%.40s' is not a length in mm such as 5 or 5mm, from 0.1 to 10000", option, text);
     *value = 1e-3 * mm;
     return STATUS_OK;
 }

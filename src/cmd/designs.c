@@ -331,7 +331,7 @@ Status design_of_run(const Run *run, const char *word, size_t *row, Designs *els
         return STATUS_OK;
     }
     design_free(&d);
-    return *row < run->table.n ? STATUS_OK : bad_data(err, "%s: is no design of %s", word, run->folder);
+    return *row < run->table.n ? STATUS_OK : bad_data(err, "%s: is not a design of %s", word, run->folder);
 }
 
 /* -- results by name ----------------------------------------------------------------------------------------------- */

@@ -18,7 +18,7 @@ static Status write_limits(const Schema *schema, const char *list, char out[OPTI
     for (size_t i = 0; i < list_count(list); i++) {
         char *is = list_item(list, i, item, sizeof item) ? strchr(item, '=') : NULL;
         if (!is || is == item)
-            return misused(err, "--fragility %.80s: is no list of NAME=NUMBER, nor `limits`", list);
+            return misused(err, "--fragility %.80s: is not a list of NAME=NUMBER, or `limits`", list);
         const char *relation = "=";
         *is = 0;
         if (is[-1] != '<' && is[-1] != '>') {
