@@ -192,7 +192,7 @@ static Status run_promise(const Args *args, Err *err)
 
 static const ArgOption PROMISE_OPTIONS[] = {
     {"--record", "FILE", NULL, 1, "a ground motion; may be repeated; the built-in ones unless given"},
-    {"--scenes", "N", NULL, 0, "random scenes of each of the seven kinds; 60 unless given"},
+    {"--scenes", "N", NULL, 0, "random scenes of each of the ten kinds; 60 unless given"},
     {"--front", "FILE", NULL, 0, "designs to simulate under all of the first record, as `imtet export` writes them"},
     {"--out", "FILE", NULL, 0, "the table, as CSV"},
     OPTION_PGA,
@@ -351,7 +351,7 @@ static const Command COMMANDS[] = {
     {.name = "promise",
      .summary = "how often every accuracy holds what it promises",
      .example = "imtet-bench promise --scenes 10",
-     .details = "Runs random scenes of six kinds of gaps, and of storeys that yield, by the engine fast at every "
+     .details = "Runs random scenes of six kinds of gaps, and of four effects, by the engine fast at every "
                 "accuracy: quantiles of the errors\n"
                 "against accuracy fine, share of the predictable ones that hold the promise, time; true over likely\n"
                 "error; and fine against CVODE in a tenth of the log-uniform ones. Ten scenes take a minute.",

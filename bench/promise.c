@@ -123,6 +123,9 @@ Status promise_case(const PromisePlan *plan, int n_floors, GapKind kind, long k,
         out->yield_drift = log_between(&r, 0.003, 0.015);
     if (kind == GAPS_OFF_CENTRE)
         out->eccentricity = between(&r, 0.02, 0.1);
+    if (kind == GAPS_LIFTING)
+        out->radius = between(&r, 5, 10);
+    out->wall = kind == GAPS_BUCKLING ? WALL_EFFECTIVE : WALL_FULL;
     out->x[n_floors] = between(&r, CORE_MIN, CORE_MAX);
     out->x[n_floors + 1] = between(&r, CORE_MIN, out->x[n_floors]);
     return STATUS_OK;
@@ -139,6 +142,9 @@ static Status simulate(const Promise *p, const PromiseCase *c, Engine engine, co
     o.sim.engine = engine;
     o.building.yield_drift = c->yield_drift;
     o.contact.eccentricity = (NumberList){1, {c->eccentricity}};
+    o.core.wall = c->wall;
+    if (c->radius > 0)
+        snprintf(o.core.foundation, sizeof o.core.foundation, "soil=C radius=%g anchors=1", c->radius);
     o.sim.accuracy = preset->accuracy;
     o.sim.steps_per_contact = preset->steps;
     o.sim.duration_s = c->duration;
@@ -329,8 +335,9 @@ static void write_part(const Promise *p, const char *part, FILE *out, FILE *prog
 
 static Status write_kind(Promise *p, GapKind kind, FILE *out, FILE *progress, Err *err)
 {
-    static const char *const WORDS[N_GAPS] = {"log-uniform", "wide",  "three floors", "1 to 10 mm",
-                                              "growing",     "equal", "yielding",     "off centre"};
+    static const char *const WORDS[N_GAPS] = {
+        "log-uniform", "wide",     "three floors", "1 to 10 mm", "growing",
+        "equal",       "yielding", "off centre",   "lifting",    "walls that buckle"};
     TRY(clear(p, p->plan->n_scenes, err));
     for (long k = 0; k < p->plan->n_scenes; k++) {
         PromiseCase c;

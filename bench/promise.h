@@ -1,11 +1,12 @@
 /* bench/promise.h -- how often the engine `fast` holds what docs/promise.md promises: quantiles of its errors against
- * `fine` over scenes of six kinds and over the designs of a front, and of `fine` against CVODE.
+ * `fine` over scenes of ten kinds and over the designs of a front, and of `fine` against CVODE.
  *
  *   scene k of a kind   of record k mod n: 9 to 40 s that begin somewhere in the strong shaking, from rest, stretched
  *                       1.5 to 4 times, peak 0.1 to 0.5 g, a box of 8, 11.3 or 15 m, walls of 4 to 40 mm
  *   kinds               gaps of 1 to 500 mm, log-uniform; 50 to 500 mm; three floors alone, 1 to 200 mm; 1 to 10 mm;
  *                       growing with height; equal but for 5 %; log-uniform with storeys that yield; log-uniform
- *                       with contacts off the centre by 2 to 10 % of the plan
+ *                       with contacts off the centre by 2 to 10 % of the plan; with a core that may lift off its mat,
+ *                       5 to 10 m in radius, on soil C; with walls that buckle
  *   predictable         a scene where gaps that are wider or narrower by 1e-6 of themselves, in N_PATTERNS patterns of
  *                       signs, the first all wider, move no result by more than the promise; of runs with
  *                       STEPS_PREDICTABLE steps per contact
@@ -35,6 +36,8 @@ typedef enum {
     GAPS_EQUAL,
     GAPS_YIELDING,
     GAPS_OFF_CENTRE,
+    GAPS_LIFTING,
+    GAPS_BUCKLING,
     N_GAPS
 } GapKind;
 
@@ -51,6 +54,8 @@ typedef struct {
     double duration, width, x[FLOORS_MAX + 2];
     double yield_drift;  /* [-] 0: no storey yields */
     double eccentricity; /* [-] of contacts */
+    double radius;       /* [m] of the mat, held down by weight alone; 0: the core is clamped */
+    CoreWall wall;
     CoreTheory theory;
 } PromiseCase;
 

@@ -110,8 +110,8 @@ TEST(a_sweep_has_a_row_for_every_setting_and_a_known_floor)
 
 TEST(scenes_of_the_promise_have_their_kind_of_gaps_and_repeat)
 {
-    static const double LEAST[N_GAPS] = {1e-3, 0.05, 1e-3, 1e-3, 1e-3, 4.75e-3, 1e-3, 1e-3},
-                        MOST[N_GAPS] = {0.5, 0.5, 5, 0.01, 0.5, 0.21, 0.5, 0.5};
+    static const double LEAST[N_GAPS] = {1e-3, 0.05, 1e-3, 1e-3, 1e-3, 4.75e-3, 1e-3, 1e-3, 1e-3, 1e-3},
+                        MOST[N_GAPS] = {0.5, 0.5, 5, 0.01, 0.5, 0.21, 0.5, 0.5, 0.5, 0.5};
     Ground g;
     PromiseCase c, again;
     ground_open(&g);

@@ -86,9 +86,12 @@ export async function openBrowser({ program = "chromium", width = 1360, height =
     const mouse = (type, x, y, buttons = type === "mouseReleased" ? 0 : 1) => call("Input.dispatchMouseEvent",
       { type, x, y, button: buttons || type === "mouseReleased" ? "left" : "none", buttons, clickCount: 1 });
 
-    // Of the nth that the selector finds, in the middle of the window.
-    const boxOf = (selector, nth = 0) => evaluate(`(() => { const e = document.querySelectorAll(${JSON.stringify(selector)})[${nth}];
-      e.scrollIntoView({ behavior: "instant", block: "center" });
+    // Of the nth that the selector finds, in the middle of the window, once it has rested there for ten frames: a page that loads moves.
+    const boxOf = (selector, nth = 0) => evaluate(`(async () => { const e = document.querySelectorAll(${JSON.stringify(selector)})[${nth}];
+      for (let box = "", rests = 0; rests < 10; rests++, await new Promise(requestAnimationFrame)) {
+        e.scrollIntoView({ behavior: "instant", block: "center" });
+        if (box !== (box = JSON.stringify(e.getBoundingClientRect()))) rests = 0;
+      }
       const { x, y, width, height } = e.getBoundingClientRect(); return { x, y, width, height }; })()`);
 
     async function click(selector, nth) {

@@ -135,6 +135,8 @@ const tried = {
         await mouse("mouseMoved", ...at, 0);
         name = await page.evaluate(`document.getElementById("tip").hidden || (${picture === "#front .layers"} && document.elementFromPoint(${at}).closest(".brush")) ? "" : document.querySelector("#tip strong").textContent`);
         if (!name) continue;
+        await mouse("mouseMoved", ...at, 0); // what the tip names is still there
+        if (!(await page.evaluate(`document.querySelector("#tip strong").textContent === ${JSON.stringify(name)}`))) continue;
         await mouse("mousePressed", ...at); await mouse("mouseReleased", ...at);
         break;
       }
