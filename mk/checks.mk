@@ -84,7 +84,7 @@ valgrind: $(PROGRAM) ## the same under valgrind
 stability: $(BENCH) ## every engine through every case; ARGS="--long --seconds 600": also those of 1e6 and 1e7 steps
 	@$(BENCH) stability $(ARGS) --out docs/measured/stability.csv
 
-stranger: $(PROGRAM) ## how many files a new objective, contact law and baseline touch, each built and tried (tests/stranger)
+stranger: $(PROGRAM) ## how many files a new objective, contact law, device and baseline touch, each built and tried (tests/stranger)
 	@scripts/stranger
 
 laws: $(BENCH) ## rebound of the contact laws, engines under each
