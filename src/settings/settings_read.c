@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include "base/csv.h"
-#include "base/text.h"
 #include "scene/foundation.h"
 #include "settings/rules.h"
 #include "settings/table.h"
@@ -78,7 +77,7 @@ static void anchor_path(char path[OPTION_TEXT_MAX], void *user)
  * What else stands there is the program's own; so is all from the first quote on. */
 static void anchor_command(char command[OPTION_TEXT_MAX], Reading *r)
 {
-    char word[OPTION_TEXT_MAX], rest[OPTION_TEXT_MAX], quoted[4 * OPTION_TEXT_MAX + 3];
+    char word[OPTION_TEXT_MAX], rest[OPTION_TEXT_MAX];
     struct stat st;
     int is_program = 1, is_script = 0;
     for (char *at = skip_blanks(command); *at && !is_script; is_program = 0) {
@@ -90,11 +89,10 @@ static void anchor_command(char command[OPTION_TEXT_MAX], Reading *r)
             return;
         if (is_script ? strpbrk(word, "./") != NULL : is_program && strchr(word, '/'))
             anchor_path(word, r);
-        if (strlen(word) > n && stat(word, &st) == 0 && S_ISREG(st.st_mode) &&
-            strlen(text_shell(word, quoted)) + strlen(rest) < (size_t)(command + OPTION_TEXT_MAX - at)) {
-            sprintf(at, "%s%s", quoted, rest);
-            n = strlen(quoted);
-        }
+        const char *quote = strpbrk(word, " \t\"\\") ? "'" : "";
+        if (strlen(word) > n && stat(word, &st) == 0 && S_ISREG(st.st_mode) && !strchr(word, '\'') &&
+            strlen(word) + strlen(rest) + 2 < (size_t)(command + OPTION_TEXT_MAX - at))
+            n = (size_t)sprintf(at, "%s%s%s%s", quote, word, quote, rest) - strlen(rest);
         at = skip_blanks(at + n);
     }
 }
