@@ -251,11 +251,6 @@ Status pareto_archive_insert(Archive *a, const double x[], const double f[], con
     return STATUS_OK;
 }
 
-Status pareto_archive_reserve(Archive *a, size_t n, Err *err)
-{
-    return n <= a->n_max ? STATUS_OK : resize(a, n, a->has_means, err);
-}
-
 void pareto_archive_predicted(Archive *a, size_t row)
 {
     a->violation[row] = violation_of(a->n_con, a->H + row * a->n_con);

@@ -67,9 +67,6 @@ void pareto_archive_free(Archive *a);
 Status pareto_archive_insert(Archive *a, const double x[], const double f[], const double g[], int ok,
                              EvaluationKind kind, size_t generation, Err *err);
 
-/* Room for n rows in all, for what is known to come. */
-Status pareto_archive_reserve(Archive *a, size_t n, Err *err);
-
 /* Y and H of a design that is screened are now what is expected of the whole evaluation. */
 void pareto_archive_predicted(Archive *a, size_t row);
 

@@ -59,9 +59,3 @@ double convergence_expected(const double h[3])
     const double last = h[2] - h[1], before = h[1] - h[0];
     return last > 0.0 ? fmin(last * fmin(last / before, 1.0), 1.0 - h[2]) : last;
 }
-
-void convergence_pack(Convergence *c, Pack *p)
-{
-    pack_size(p, &c->after, UINT32_MAX);
-    pack_size(p, &c->end, UINT32_MAX);
-}

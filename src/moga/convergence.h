@@ -36,5 +36,3 @@ typedef struct {
     size_t after; /* stop_after by which it was found to be over; 0: it is not */
     size_t end;   /* evaluations with which it ends: those under way and the last replicates are still made */
 } Convergence;
-
-void convergence_pack(Convergence *c, Pack *p);

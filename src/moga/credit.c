@@ -1,7 +1,5 @@
 #include "moga/credit.h"
 
-#include <float.h>
-
 #include "moga/constants.h"
 
 int credit_prefers_first(const Credit *c)
@@ -22,10 +20,4 @@ void credit_learn(Credit *c, const CreditResults *r)
         return;
     c->gain += CREDIT_WEIGHT * (share / measures - c->gain);
     c->designs += CREDIT_WEIGHT * (r->designs[0] / (r->designs[0] + r->designs[1]) - c->designs);
-}
-
-void credit_pack(Credit *c, Pack *p)
-{
-    pack_numbers(p, &c->gain, 1, 0.0, 1.0);
-    pack_numbers(p, &c->designs, 1, DBL_MIN, 1.0 - DBL_EPSILON);
 }

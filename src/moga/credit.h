@@ -7,7 +7,6 @@
  * Threads  pure functions of their arguments */
 #pragma once
 
-#include "base/pack.h"
 #include "moga/infill.h"
 
 /* Shares of the first criterion. */
@@ -22,4 +21,3 @@ typedef struct {
 
 int credit_prefers_first(const Credit *c);
 void credit_learn(Credit *c, const CreditResults *results);
-void credit_pack(Credit *c, Pack *p);

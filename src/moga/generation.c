@@ -24,23 +24,10 @@ size_t generation_samples(const Search *s)
 
 /* -- step 6: environmental selection ------------------------------------------------------------------------------- */
 
-static Breeding breeding(const Search *s)
-{
-    const Common *c = &s->common;
-    return (Breeding){c,
-                      &s->population,
-                      s->surrogate,
-                      &s->criteria,
-                      s->selection,
-                      c->config->surrogate == SURROGATE_ON && surrogate_is_usable(s->surrogate),
-                      c->archive.n_front > 0 || s->screening.n_front > 0};
-}
-
 /* Next population: from the members of the present one, as the archive has them now (a replicate may have changed one,
  * or have failed), and the results; failed ones and further replicates do not join. */
 static void renew_population(Search *s, size_t first_new)
 {
-    const Breeding w = breeding(s);
     const Archive *a = &s->common.archive;
     Population *population = &s->population, *pool = &s->offspring.pool;
     const size_t n_members = population->n;
@@ -58,7 +45,7 @@ static void renew_population(Search *s, size_t first_new)
         pool->violation[last] = a->violation[row];
         pool->row[last] = row;
     }
-    offspring_survive(&s->offspring, &w, pool, 0);
+    offspring_survive(&s->offspring, &s->common, s->selection, pool, 0);
     population_copy(population, pool);
 }
 
@@ -153,11 +140,12 @@ static Status choose(Search *s, Err *err)
         return STATUS_OK;
 
     /* 3, 4: a batch of offspring; where the surrogate proposes no new design, of children of variation. */
-    Breeding w = breeding(s);
-    do {
-        offspring_make(&s->offspring, &w);
-        offspring_select(&s->offspring, &w, b);
-    } while (b->n == 0 && w.with_surrogate--);
+    const int is_usable = c->config->surrogate == SURROGATE_ON && surrogate_is_usable(s->surrogate),
+              has_front = c->archive.n_front > 0 || s->screening.n_front > 0;
+    Breeding w = {c, &s->population, s->surrogate, &s->criteria, s->selection, is_usable, has_front};
+    do
+        offspring_propose(&s->offspring, &w, b);
+    while (b->n == 0 && w.with_surrogate--);
     if (b->n == 0)
         sample_again(s);
     replication_add(c, &s->criteria, b);
@@ -168,7 +156,7 @@ Status generation_ask(Search *s, Err *err)
 {
     Common *c = &s->common;
     const Problem *p = c->problem;
-    double *x = s->scratch.given;
+    double *x = s->scratch.samples;
     s->batch.n = 0;
     s->batch.room = screening_room(&s->screening, c, s->batch.size_max);
 

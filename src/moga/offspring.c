@@ -11,11 +11,11 @@ static Random stream(const Common *c, RandomPurpose purpose, uint32_t name)
     return random_stream(c->config->seed, purpose, (uint32_t)c->generation, name);
 }
 
-void offspring_survive(Offspring *o, const Breeding *w, Population *p, uint32_t step)
+void offspring_survive(Offspring *o, const Common *c, Selection *selection, Population *p, uint32_t step)
 {
-    Random random = stream(w->common, RANDOM_NICHING, step);
+    Random random = stream(c, RANDOM_NICHING, step);
     const size_t n =
-        selection_select(w->selection, p->n, p->F, p->violation, w->common->config->population, &random, o->survivors);
+        selection_select(selection, p->n, p->F, p->violation, c->config->population, &random, o->survivors);
     population_keep(p, n, o->survivors);
 }
 
@@ -152,7 +152,8 @@ static void add_probes(Offspring *o, const Breeding *w)
     }
 }
 
-void offspring_make(Offspring *o, const Breeding *w)
+/* Candidates: children of variation, or what the surrogate proposes. */
+static void make(Offspring *o, const Breeding *w)
 {
     const Common *c = w->common;
     o->members.n = o->n_unpicked = o->n_pending = 0;
@@ -165,7 +166,7 @@ void offspring_make(Offspring *o, const Breeding *w)
         if (!w->with_surrogate)
             break;
         surrogate_predict(w->surrogate, &o->pool, n_parents, 0);
-        offspring_survive(o, w, &o->pool, 1 + step);
+        offspring_survive(o, c, w->selection, &o->pool, 1 + step);
     }
     for (size_t i = 0; i < o->pool.n; i++)
         if (o->pool.row[i] == PREDICTED)
@@ -191,8 +192,9 @@ void offspring_make(Offspring *o, const Breeding *w)
  * lower the values to beat: by their mean their neighbours would still gain an error. Of the others but probes those
  * with the greatest gain beside what is picked already are taken, by both criteria as they share the group; then
  * probes. */
-void offspring_select(Offspring *o, const Breeding *w, Batch *b)
+void offspring_propose(Offspring *o, const Breeding *w, Batch *b)
 {
+    make(o, w);
     const Population *p = &o->members;
     Infill *const *select = w->criteria->select;
     const size_t size = batch_size(w->common), end = p->n - o->n_pending, first = end - o->n_unpicked;

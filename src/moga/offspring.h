@@ -37,10 +37,8 @@ typedef struct {
     int with_surrogate, has_front; /* a design is known, or predicted from its cheap level, that is feasible */
 } Breeding;
 
-void offspring_make(Offspring *o, const Breeding *w);
-
-/* Those that are evaluated go to the batch. */
-void offspring_select(Offspring *o, const Breeding *w, Batch *b);
+/* Those that are to be evaluated go to the batch. */
+void offspring_propose(Offspring *o, const Breeding *w, Batch *b);
 
 /* Environmental selection; step: of the random stream. */
-void offspring_survive(Offspring *o, const Breeding *w, Population *p, uint32_t step);
+void offspring_survive(Offspring *o, const Common *c, Selection *selection, Population *p, uint32_t step);

@@ -1,5 +1,7 @@
 #include "moga/state.h"
 
+#include <float.h>
+
 #include "base/carve.h"
 
 /* -- memory -------------------------------------------------------------------------------------------------------- */
@@ -25,7 +27,6 @@ static void layout(void *search, Carve *c)
     CARVE(c, w->members, n_pool);
     CARVE(c, w->slices, b->size_max);
     CARVE(c, w->samples, b->size_max * n_var);
-    CARVE(c, w->given, n_var);
     CARVE(c, w->f, p->n_obj);
     CARVE(c, w->g, p->n_con);
 }
@@ -113,10 +114,12 @@ void state_pack(Search *s, Pack *p)
     pack_size(p, &s->offspring.n_dealt, UINT32_MAX);
     population_pack(&s->population, p, &s->common.archive);
     surrogate_pack(s->surrogate, p);
-    convergence_pack(&s->common.convergence, p);
+    pack_size(p, &s->common.convergence.after, UINT32_MAX);
+    pack_size(p, &s->common.convergence.end, UINT32_MAX);
     pack_size(p, &s->screening.is_on, 1);
     pack_size(p, &s->n_vain, UINT32_MAX);
-    credit_pack(&s->criteria.credit, p);
+    pack_numbers(p, &s->criteria.credit.gain, 1, 0.0, 1.0);
+    pack_numbers(p, &s->criteria.credit.designs, 1, DBL_MIN, 1.0 - DBL_EPSILON);
     pending_pack(&s->common.pending, p);
 
     /* Where it stands; why it stops is decided anew behind a step. */
@@ -139,7 +142,6 @@ static Status restore_row(const Evaluation *e, void *search, Err *err)
 
 Status state_restore(Search *s, const SearchStart *start, Err *err)
 {
-    TRY(pareto_archive_reserve(&s->common.archive, start->n + start->n / 8, err));
     if (start->each)
         TRY(start->each(restore_row, s, start->user, err));
     for (size_t i = 0; i < start->n && !start->each; i++)

@@ -14,7 +14,6 @@ typedef struct {
     size_t *members; /* (pool) 0, 1, ... */
     size_t *slices;  /* (batch.size_max) of the Latin hypercube */
     double *samples; /* (batch.size_max, n_var) of it */
-    double *given;   /* (n_var) */
     double *f, *g;   /* (n_obj) (n_con) of a design restored */
 } Scratch;
 
