@@ -77,7 +77,7 @@ static double values_of(const Problem *p, size_t d)
 static void add_rest(Search *s)
 {
     const Problem *p = s->common.problem;
-    double *x = s->scratch.given, n = 1.0;
+    double *x = s->scratch.samples, n = 1.0;
     for (size_t d = 0; d < p->n_var; d++)
         n *= values_of(p, d);
     for (size_t i = 0; n <= COUNTED_MAX && i < (size_t)n && s->batch.n < s->batch.size_max; i++) {
