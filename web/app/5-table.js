@@ -42,7 +42,7 @@ function designTable(host) {
     const name = element("button", { type: "button", title: "show this design in the pictures", onclick: () => mark(i), onfocus: () => hover(i), onblur: () => hover(undefined) }, String(id));
     const words = (isKnee ? " knee" : "") + (id === run.chosen && !isKnee ? " chosen" : "") + (isBeyond ? " \u26a0" : "") + (note ? " \u270e" : "");
     return element("tr", { "data-id": id, class: [i === state.marked && "marked", isKnee && "knee"].filter(Boolean).join(" "), onpointerenter: () => hover(i), onpointerleave: () => hover(undefined),
-      title: [isBeyond && "maximum indentation beyond what the contact law is meant for", note].filter(Boolean).join("; ") },
+      title: [isBeyond && "maximum indentation beyond the range of the contact law", note].filter(Boolean).join("; ") },
     element("td", name, words), ...shown.map((c) => element("td", { class: !c.sense && "variable" }, known(c, i))));
   }
 

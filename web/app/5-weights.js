@@ -48,7 +48,7 @@ function weightsPart(host) {
     refillRows(list, table("ranked", ["design", "score", ...objectives], best.map((i) => line([element("button", { type: "button", onclick: () => mark(i) }, String(ids[i])), digits(score.value[i]), ...objectives.map((c) => known(c, i))], { "data-id": ids[i] }))));
   }
 
-  host.append(note("Weights of the objectives over their ranges on the front; with a value of the reference point in any objective, the design nearest to it. The pictures are coloured by the score; the best of the selected designs:"),
+  host.append(note("Weights of the objectives over their ranges on the front. Enter a target to rank designs by their distance from it. The pictures are coloured by the score (lower is better); the best of the selected designs:"),
     div("weights", ...fields.map(({ row }) => row)),
     div("bar", plainButton("Equal weights, no reference point", () => {
       state.weights.clear();

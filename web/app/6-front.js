@@ -119,7 +119,7 @@ function frontPart() {
   if (objectives.length > 1) {
     weightsPart(folded(host, "Choose by weights or a reference point"));
     const matrix = folded(host, "All pairs of objectives, with their rank correlations");
-    matrix.append(note("Above the diagonal Spearman\u2019s rank correlation of the selected designs: orange, better in one is worse in the other; blue, they become better together."));
+    matrix.append(note("Above the diagonal Spearman\u2019s rank correlation of the selected designs: orange means that better in one is worse in the other, blue that both improve together."));
     scatterMatrix(matrix.appendChild(element("figure", { class: "scroll" })));
   }
   typesPart(host);

@@ -59,7 +59,7 @@ function boundWarning(d) {
     shut.length ? `Gaps that never close${underRecord(d) || " under this motion"}: ${shut.length === 1 ? "floor" : "floors"} ${listed(shut, 12)}.` : ""];
 }
 
-const yieldWords = (r) => `Storeys that yield dissipate ${show(r.ed_hysteresis_pct)} %` + " of the input energy: the modes are those of the building before it yields, and what they dissipate says little.";
+const yieldWords = (r) => `Storeys that yield dissipate ${show(r.ed_hysteresis_pct)} %` + " of the input energy: the modes are those of the elastic building, and their shares say little.";
 // Behind what was found under one record, where the numbers are of several.
 const underRecord = (d) => (run.rule ? ` under ${shortName(d.record)}` : "");
 
@@ -68,7 +68,7 @@ function warnings(d) {
   const all = [
     d.with_core.reason ? ["worse", `This design could not be simulated: ${d.with_core.reason}`] : null,
     d.with_core.ed_hysteresis_pct > 0 && objectives.some((c) => /^ed\d/.test(c.name)) ? ["note", yieldWords(d.with_core) + " Do not choose by mode shares."] : null,
-    d.with_core.beyond_law ? ["worse", "The maximum indentation is more than a tenth of the contact\u2019s radius: beyond what the contact law is meant for."] : null,
+    d.with_core.beyond_law ? ["worse", "The maximum indentation is more than a tenth of the contact\u2019s radius, beyond the range of the contact law."] : null,
     beyondLaw.size ? ["note", `${count(beyondLaw.size)} of ${count(n)}` + " designs of the front are beyond the contact law (\u26a0 in the table)."] : null,
     ...boundWarning(d).filter(Boolean).map((text) => ["note", text]),
     run.evaluated && run.failed > 0.05 * run.evaluated ? ["note", `${count(run.failed)} of ${count(run.evaluated)} simulations failed (imtet status says why).`] : null,
@@ -103,7 +103,7 @@ function summaryPart() {
   byId("title").textContent = `Study ${run.name}`;
   host.append(element("p", { class: waits ? "lead waits" : "lead", id: "subtitle" }, sentence(d)), ...(d?.verdict?.match(/.+/g) ?? []).map((text) => element("p", { class: "verdict" }, text)), d ? warnings(d) : waits ? skeleton(285) : "", cards());
   if (run.notes_fault) host.append(warn(`Notes: ${run.notes_fault}`));
-  if (d && run.rule) host.append(note("The numbers are the " + run.rule + "; the charts below are one simulation of it as designed, under " + `${shortName(d.record)}${d.records > 1 ? `; the band is what it reaches at least and at most under all ${d.records} records` : " alone"}.`));
+  if (d && run.rule) host.append(note("The numbers are the " + run.rule + "; the charts below are one simulation of it as designed, under " + `${shortName(d.record)}${d.records > 1 ? `; the band spans all ${d.records} records` : " alone"}.`));
   if (d) peakPart(host, d, 220);
   if (waits) host.append(element("p", { class: "note", role: "status" }, "Simulating this design and what it is compared with\u2026"), skeleton(252));
   const more = folded(host, "The best designs of the front, beside the baselines");

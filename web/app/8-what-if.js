@@ -103,7 +103,7 @@ function whatIfPart() {
   // ---- what came of it
   function place() {
     if (!answer.objectives) return `This design could not be simulated: ${answer.reason}`;
-    const law = answer.beyond_law ? " The indentation is beyond what the contact law is meant for." : "";
+    const law = answer.beyond_law ? " The indentation is beyond the range of the contact law." : "";
     if (answer.dominated_by === undefined) return "Not comparable with the front: motion or restitution differ from the run\u2019s, or the run judges by several simulations." + law;
     if (answer.dominated_by) return `Dominated by ${count(answer.dominated_by)} of ${count(n)} designs of the front.${law}`;
     return `Nondominated${answer.dominates ? `: it dominates ${count(answer.dominates)} ${answer.dominates === 1 ? "design" : "designs"} of the front` : ""}.${law}`;

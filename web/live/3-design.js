@@ -39,6 +39,6 @@ matters.hidden = false;
 matters.addEventListener("toggle", async () => {
   if (!run.importance) run.importance = await ask("importance").catch(() => null);
   if (run.importance) importanceFigure(matters);
-  else matters.append(note("Too few designs succeeded to say so."));
+  else matters.append(note("Too few designs succeeded to tell."));
   drawAll();
 }, { once: true });

@@ -39,7 +39,7 @@ async function against(body, others) {
       const strip = grid.appendChild(element("figure", element("h3", "The fronts")));
       frontStrip(strip, `Fronts of ${runs.map((r) => r.name).join(" and ")}`, 280)(runs.map((r, i) => ({ ...paleFront(r.f), colour: colours[i], alpha: 0.5 * paleFront(r.f).alpha })));
       const rows = runs.flatMap((r, i) => r.simulated.map((x, k) => ({ x, y: 100 * r.volume[k], colour: colours[i] })));
-      figure(grid, "Hypervolume over the number of designs", "In one box for all: from a fifth of their range below the best of all fronts to the worst.", (width) => growthChart(width, 260, rows));
+      figure(grid, "Hypervolume over the number of designs", "One box for all fronts: from a fifth of their range beyond the best to the worst.", (width) => growthChart(width, 260, rows));
     });
   } catch (error) {
     refill(body, (host) => host.append(warn(error.message)));
