@@ -187,6 +187,18 @@ static inline void write_in_place(const char *name, const char *text)
     free(path);
 }
 
+/* Storeys of a building in the folder @/name: lines of height, mass and stiffness. */
+static inline void write_building(const char *name, const char *rows)
+{
+    char file[64], text[400];
+    char *folder = in_place(name);
+    mkdir(folder, 0777);
+    free(folder);
+    snprintf(file, sizeof file, "%s/storeys.csv", name);
+    snprintf(text, sizeof text, "height_m,mass_kg,stiffness_n_m\n%s", rows);
+    write_in_place(file, text);
+}
+
 static inline int count(const char *text, const char *word)
 {
     int n = 0;

@@ -6,19 +6,6 @@
 #include "scene/neighbour.h"
 #include "one_scene.h"
 
-#define HEAD "height_m,mass_kg,stiffness_n_m\n"
-
-static void write_building(const char *name, const char *rows)
-{
-    char file[64], text[400];
-    char *folder = in_place(name);
-    mkdir(folder, 0777);
-    free(folder);
-    snprintf(file, sizeof file, "%s/storeys.csv", name);
-    snprintf(text, sizeof text, HEAD "%s", rows);
-    write_in_place(file, text);
-}
-
 /* A building with a neighbour on its right, both undamped, read from the place. */
 static SceneOptions pair_of(const char *building, const char *neighbour, Engine engine)
 {

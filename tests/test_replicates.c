@@ -183,35 +183,17 @@ TEST(a_structure_as_built_is_the_scene_whose_settings_say_so)
     for (int k = 0; k < 7; k++) {
         Settings other = s;
         AsBuilt b = AS_DESIGNED;
-        switch (k) {
-        case 0:
-            b.restitution = -0.2;
-            other.contact.restitution -= 0.2;
-            break;
-        case 1:
-            b.contact_stiffness = 2;
-            other.contact.youngs_modulus_pa *= 2;
-            break;
-        case 2:
-            b.core_stiffness = 1.5;
-            other.core.youngs_modulus_pa *= 1.5;
-            break;
-        case 3:
-            b.core_damping = 0.5;
-            other.core.damping *= 0.5;
-            break;
-        case 4:
-            b.ground_stiffness = 0.5;
-            other.core.foundation_factor *= 0.5;
-            break;
-        case 5:
-            b.strength = 0.6;
-            other.building.yield_drift *= 0.6;
-            break;
-        default:
-            b.building_damping = 3;
-            other.building.damping.at[0] *= 3;
-        }
+        const struct {
+            double *built, value, *set;
+        } part[] = {{&b.restitution, -0.2, &other.contact.restitution},
+                    {&b.contact_stiffness, 2, &other.contact.youngs_modulus_pa},
+                    {&b.core_stiffness, 1.5, &other.core.youngs_modulus_pa},
+                    {&b.core_damping, 0.5, &other.core.damping},
+                    {&b.ground_stiffness, 0.5, &other.core.foundation_factor},
+                    {&b.strength, 0.6, &other.building.yield_drift},
+                    {&b.building_damping, 3, &other.building.damping.at[0]}};
+        *part[k].built = part[k].value;
+        *part[k].set = k == 0 ? *part[k].set + part[k].value : *part[k].set * part[k].value;
         const SimResult built = run_scene(&s, &b), wanted = run_scene(&other, NULL);
         assert_close(built.j1_m, wanted.j1_m, 1e-9);
         assert_close(built.j3_g, wanted.j3_g, 1e-6);

@@ -13,17 +13,6 @@ static double gyration(void)
     return sqrt((1 + ASPECT * ASPECT) / 12);
 }
 
-static void write_building(const char *name, const char *rows)
-{
-    char file[64], text[400];
-    char *folder = in_place(name);
-    mkdir(folder, 0777);
-    free(folder);
-    snprintf(file, sizeof file, "%s/storeys.csv", name);
-    snprintf(text, sizeof text, "height_m,mass_kg,stiffness_n_m\n%s", rows);
-    write_in_place(file, text);
-}
-
 /* Three storeys of mass and stiffness over `less`, contacts off the centre. */
 static SceneOptions three_floors(const char *name, double less, double share)
 {
