@@ -83,8 +83,7 @@ class Search(library.Handle, Tabular):
         "real", "log", "int", "list:4|5|8" (numbers in ascending order) or "choice:steel|oak", one for all variables or one
         of each. A choice is 0, 1, ... in X.
     seed : int or None
-        None draws one and keeps it in `seed`. The same arguments, answers and seed give the same designs to the last
-        bit; portions of asking, the order of telling, saving and loading change nothing.
+        None draws one and keeps it in `seed`. The same arguments, answers and seed give the same designs, bit by bit.
     evaluations : int
         Largest number of designs to evaluate.
     constraints : int
@@ -163,8 +162,7 @@ class Search(library.Handle, Tabular):
     def save(self, path: Path) -> None:
         """Save the search to a file.
 
-        The file is replaced when the new one is whole on the disk, so that a kill loses nothing; the save before is kept
-        as PATH.prev.
+        A kill loses nothing: a whole new file replaces the old one, which is kept as PATH.prev.
         """
         call("imtet_search_save", self._search, os.fsencode(path))
 
