@@ -444,7 +444,7 @@ static const ArgOption OPTIONS[] = {
           "FROM:STEP:TO as above"),
     VALUE("--fragility", "LIST",
           "with FROM:STEP:TO: probability of exceeding drift_ratio=0.02,j3_g=5 by intensity; limits: those of the run"),
-    VALUE("--counts", "FILE", "instead of a design: fragility of a CSV of intensity (sa_g, say), exceeded, of"),
+    VALUE("--counts", "FILE", "fragility by a CSV of intensity (such as sa_g), exceeded and of, without a design"),
     VALUE("--hazard", "FILE",
           "CSV of sa_g (or pga_g) and rate_per_year: adds yearly rates of exceedance and the annual loss"),
     OPTION_UNIT,
