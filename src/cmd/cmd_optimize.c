@@ -122,25 +122,24 @@ static void say_screening(Document *d, const StudySummary *sum)
                      sum->level_agreement, sum->has_left_screening ? ": too low, so that screening ended" : "");
 }
 
-/* Once, of a problem that is no tower: what constraint values that end at 0 leave out. */
+/* Once, of the first constraint of an external problem whose values end at 0: what they leave out. */
 static void say_clipped(Document *d, const Run *run)
 {
-    char names[160] = "";
-    for (size_t c = 0, n = 0; c < run->schema.n_extra && run->schema.order.n == 0 && n < sizeof names; c++) {
-        double least = INFINITY, most = 0;
+    size_t c = 0;
+    double least = 1, most = 0;
+    for (; c < run->schema.n_extra && run->schema.order.n == 0 && !(least == 0 && most > 0); c++) {
+        least = most = 0;
         for (size_t i = 0; i < run->table.n; i++)
             if (run->table.row[i].outcome == OUTCOME_OK) {
                 least = fmin(least, run->table.row[i].extra[c]);
                 most = fmax(most, run->table.row[i].extra[c]);
             }
-        if (least == 0 && most > 0)
-            n += snprintf(names + n, sizeof names - n, "%s%s", n > 0 ? ", " : "", schema_extra(&run->schema, c)->name);
     }
-    if (names[0])
+    if (least == 0 && most > 0)
         document_say(d, "p",
-                     "%s: never below 0. The search learns more from values that also say how far a limit is, stress / "
-                     "allowed - 1 and not max(0, ...)",
-                     names);
+                     "%s is never below 0: the search learns more from values that also say how far a limit is, "
+                     "stress / allowed - 1 and not max(0, ...)",
+                     schema_extra(&run->schema, c - 1)->name);
 }
 
 /* Nothing succeeded, or nothing keeps search.limits: then the designs that come nearest. */

@@ -419,7 +419,8 @@ Status document_give(Document *d, const Args *args, Err *err)
     const char *csv = args_value(args, "--csv"), *svg = args_value(args, "--svg");
     char path[PATH_MAX];
     Status status = csv && d->rows ? rows_write(json_incref(d->rows), csv, err) : STATUS_OK;
-    if (csv && json_array_size(d->summaries) > 0 && strcmp(csv, "-") != 0) { /* FILE-fractiles.csv */
+    if (csv && json_array_size(d->summaries) > 0 && strcmp(csv, "-") != 0 &&
+        strncmp(csv, "/dev/", 5) != 0) { /* FILE-fractiles.csv */
         snprintf(path, sizeof path, "%.*s-fractiles.csv", (int)strlen(csv) - 4 * text_ends(csv, ".csv"), csv);
         THEN(status, rows_write(json_incref(d->summaries), path, err));
     }
