@@ -80,8 +80,7 @@ class Search(library.Handle, Tabular):
     objectives : int
         Number of values that the function returns.
     kinds : str or list of str, optional
-        "real", "log", "int", "list:4|5|8" (numbers in ascending order) or "choice:steel|oak", one for all variables or one
-        of each. A choice is 0, 1, ... in X.
+        "real", "log", "int", "list:4|5|8", "choice:steel|oak", one for all variables or of each. A choice is 0, 1, ... in X.
     seed : int or None
         None draws one and keeps it in `seed`. The same arguments, answers and seed give the same designs, bit by bit.
     evaluations : int
