@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "base/list.h"
+#include "base/text.h"
 #include "motion/builtin.h"
 #include "motion/synthetic.h"
 
@@ -148,9 +149,7 @@ static Status each_of_list(const char *path, SourceFn take, void *user, Err *err
 
 static int is_list(const char *path)
 {
-    static const char END[] = "list.txt";
-    const size_t n = strlen(path);
-    return n >= sizeof END - 1 && strcmp(path + n - (sizeof END - 1), END) == 0;
+    return text_ends(path, "list.txt");
 }
 
 Status suite_each(const char *item, SourceFn take, void *user, Err *err)

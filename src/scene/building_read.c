@@ -65,17 +65,13 @@ static const UnitWord WORDS[][5] = {{{"N/m", 1}, {"kN/m", 1e3}, {"MN/m", 1e6}, {
                                     {{"kg", 1}, {"t", 1e3}, {"kip", KIP_PER_IN}, {NULL, 0}}};
 
 /* The first of the words in a line; NULL: none of them. */
-static const UnitWord *unit_in(const char *line, size_t length, const UnitWord words[])
+static const UnitWord *unit_in(const char *line, const char *end, const UnitWord words[])
 {
-    static const char APART[] = " \t\r,;:=()[]\"";
-    for (const char *at = line, *end = line + length; at < end;) {
-        size_t n = 0;
-        while (at + n < end && !strchr(APART, at[n]))
-            n++;
+    for (const char *p = line; p <= end;) {
+        const Cell c = cell_next(&p, end, " ,;:=()[]");
         for (const UnitWord *w = words; w->word; w++)
-            if (strlen(w->word) == n && strncmp(at, w->word, n) == 0)
+            if (strlen(w->word) == (size_t)(c.to - c.from) && strncmp(c.from, w->word, strlen(w->word)) == 0)
                 return w;
-        at += n + 1;
     }
     return NULL;
 }
@@ -93,7 +89,7 @@ static Status matrix_factor(const BuildingOptions *o, const char *path, const Un
     const Status status = lines_open(&l, path, text, length, err);
     while (status == STATUS_OK && !unit && lines_next(&l))
         if (l.from < l.to && *l.from == '#')
-            unit = unit_in(l.from + 1, (size_t)(l.to - l.from) - 1, words);
+            unit = unit_in(l.from + 1, l.to, words);
     free(text);
     *factor = unit ? unit->factor : set;
     return !unit || o->units == BUILDING_AUTO || unit->factor == set

@@ -224,12 +224,8 @@ int format_width(const Lines *l)
 
 MotionUnit unit_of(const char *from, const char *to)
 {
-    static const struct {
-        const char *word;
-        MotionUnit unit;
-    } UNITS[] = {{"m/s2", UNIT_M_S2},   {"m/s/s", UNIT_M_S2},   {"m/ss", UNIT_M_S2},   {"ms-2", UNIT_M_S2},
-                 {"cm/s2", UNIT_CM_S2}, {"cm/s/s", UNIT_CM_S2}, {"cm/ss", UNIT_CM_S2}, {"cms-2", UNIT_CM_S2},
-                 {"gal", UNIT_CM_S2},   {"gals", UNIT_CM_S2},   {"g", UNIT_G}};
+    static const char *const UNITS[] = {
+        [UNIT_M_S2] = "m/s2|m/s/s|m/ss|ms-2", [UNIT_CM_S2] = "cm/s2|cm/s/s|cm/ss|cms-2|gal|gals", [UNIT_G] = "g"};
     char tidy[16];
     size_t n = 0;
 
@@ -243,10 +239,9 @@ MotionUnit unit_of(const char *from, const char *to)
         else if (!isspace((unsigned char)c) && !strchr("^*\xc2", c))
             tidy[n++] = c == '\xb2' ? '2' : c;
     }
-    tidy[n] = 0;
-    for (size_t i = 0; i < N_OF(UNITS); i++)
-        if (strcmp(tidy, UNITS[i].word) == 0)
-            return UNITS[i].unit;
+    for (MotionUnit unit = UNIT_M_S2; unit <= UNIT_G; unit++)
+        if (text_is(EQUALS, tidy, tidy + n, UNITS[unit]))
+            return unit;
     return UNIT_FROM_FILE;
 }
 
