@@ -98,14 +98,15 @@ static Status take_counts(Fragilities *f, const Table *t, Err *err)
     TRY_ROOM(f->level, t->n_rows, "intensities", err);
     snprintf(f->intensity, sizeof f->intensity, "%s", t->names[at]);
     for (size_t i = 0; i < t->n_rows; i++) {
-        const double *row = t->values + 3 * i, x = f->level[i] = row[at];
-        f->n_at[i] = (size_t)fmax(row[of], 0);
-        f->exceeded[i] = (size_t)fmax(row[exceeded], 0);
-        if (!(x > (i > 0 ? f->level[i - 1] : 0) && isfinite(x)) || (double)f->n_at[i] != row[of] ||
-            (double)f->exceeded[i] != row[exceeded] || row[of] < 1 || row[exceeded] > row[of])
+        const double *row = t->values + 3 * i, before = i > 0 ? f->level[i - 1] : 0;
+        const double x = row[at], n = row[of], z = row[exceeded];
+        if (!(x > before && n >= 1 && n <= 1e9 && z >= 0 && z <= n && n == floor(n) && z == floor(z)))
             return bad_data(err,
                             "%s:%d: intensities must rise above 0, `of` is a whole number, `exceeded` one up to it",
                             t->path, t->line[i]);
+        f->level[i] = x;
+        f->n_at[i] = (size_t)n;
+        f->exceeded[i] = (size_t)z;
     }
     f->n_levels = t->n_rows;
     return STATUS_OK;
