@@ -89,7 +89,7 @@ class Result(Copied):
 class Scene(library.Handle):
     """A tower, the core inside it and a ground motion.
 
-        Scene("configs/kobe.ini", record="KOBE.AT2", **{"sim.forces": "yes"})
+        Scene("configs/kobe.ini", record="builtin:kobe-like", **{"sim.forces": "yes"})
 
     Threads may simulate on one scene at once.
 
