@@ -63,13 +63,11 @@ static const char *verdict_of(const Improved *r)
     return !r->has_changed        ? "No improvement was found that keeps the other objectives."
            : !r->keeps            ? "The improvement does not keep the other objectives when it is simulated again."
            : isnan(r->gain_error) ? "The spread is unknown, because each design was simulated once."
-           : polish_counts(r)     ? "Confirmed: the gain is more than the standard deviation when both designs are "
-                                    "simulated again."
+           : polish_counts(r)     ? "Confirmed by new simulations: the gain is more than the standard deviation."
            : r->gain > fmax(POLISH_GAIN_MIN, 2.0 * r->gain_error)
-               ? "Simulated at twice the steps on both designs it is not."
-           : r->gain <= POLISH_GAIN_MIN
-               ? "The gain is less than 0.1 % of the range of the front when both designs are simulated again."
-               : "The gain is not more than the standard deviation when both designs are simulated again.";
+               ? "The gain is not more than the standard deviation at twice the steps."
+           : r->gain <= POLISH_GAIN_MIN ? "The gain in new simulations is less than 0.1 % of the range of the front."
+                                        : "The gain in new simulations is not more than the standard deviation.";
 }
 
 /* Both designs, the gain of every objective that was to be improved, what is to be thought of it, and the cost. */

@@ -11,8 +11,8 @@ static void greet(const Server *s, const char *folder)
     char host[HOST_NAME_MAX + 1] = "HOST";
     const char *user = getenv("USER");
     gethostname(host, sizeof host - 1);
-    printf("%s is shown at\n  %s\nfrom another machine: ssh -N -L %d:127.0.0.1:%d %s@%s   and the same address there\n"
-           "Ctrl-C ends it\n",
+    printf("%s is shown at\n  %s\n"
+           "from another machine run  ssh -N -L %d:127.0.0.1:%d %s@%s  and open the same address\nCtrl-C ends it\n",
            folder, serve_url(s), serve_port(s), serve_port(s), user && *user ? user : "USER", host);
     fflush(stdout);
 }
