@@ -31,22 +31,8 @@ Status handle_add(imtet_search *s, const double x[], Err *err)
     return STATUS_OK;
 }
 
-/* Put a design that the search asks for into the table. A search that was saved asks again for what was under way,
- * which may be told already. */
-static Status take_question(imtet_search *s, const Question *q, Err *err)
-{
-    const size_t row = q->number - 1;
-    if (row == s->table.n)
-        TRY(handle_add(s, q->x, err));
-    if (row >= s->table.n)
-        return fail(err, STATUS_INTERNAL, "design %zu was never asked for", q->number);
-    Evaluation *e = &s->table.row[row];
-    e->kind = q->kind;
-    e->generation = (long)q->generation;
-    return s->design[row].place == DESIGN_TOLD ? search_tell(s->search, q->number, e, NULL, err) : STATUS_OK;
-}
-
-/* Let the search go on until it waits for answers, or ends: what may be asked for now is in the table. Meanwhile
+/* Let the search go on until it waits for answers, or ends: what may be asked for now is in the table. A search that
+ * was saved asks again for what was under way, which may be told already. Meanwhile
  * threads and BLAS are as the search wants them; afterwards the caller's own are as before. */
 static Status advance(imtet_search *s, Err *err)
 {
@@ -62,8 +48,20 @@ static Status advance(imtet_search *s, Err *err)
     while (status == STATUS_OK && move != SEARCH_WAITS && move != SEARCH_ENDS) {
         Question q;
         status = search_ask(s->search, &move, &q, err);
-        if (status == STATUS_OK && move == SEARCH_ASKS)
-            status = take_question(s, &q, err);
+        if (status != STATUS_OK || move != SEARCH_ASKS)
+            continue;
+        const size_t row = q.number - 1;
+        if (row == s->table.n)
+            status = handle_add(s, q.x, err);
+        else if (row > s->table.n)
+            status = fail(err, STATUS_INTERNAL, "design %zu was never asked for", q.number);
+        if (status != STATUS_OK)
+            break;
+        Evaluation *e = &s->table.row[row];
+        e->kind = q.kind;
+        e->generation = (long)q.generation;
+        if (s->design[row].place == DESIGN_TOLD)
+            status = search_tell(s->search, q.number, e, NULL, err);
     }
     omp_set_num_threads(threads);
     linalg_end();

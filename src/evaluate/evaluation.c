@@ -99,17 +99,15 @@ Status evaluation_table_add(EvaluationTable *t, Evaluation **row, Err *err)
 #define X(array, width) t->array = widen(t->array, n_max * t->width, sizeof *t->array, &lacks);
         EVALUATION_ARRAYS(X)
 #undef X
-        for (size_t i = 0; i < t->n_used; i++)
+        for (size_t i = 0; i < t->n; i++)
             point_row(t, i);
         if (lacks)
             return fail_memory(err, n_max, "evaluations");
         t->n_max = n_max;
     }
-    if (t->n == t->n_used) {
-        t->row[t->n_used] = (Evaluation){0};
-        point_row(t, t->n_used++);
-    }
-    *row = &t->row[t->n++];
+    *row = &t->row[t->n];
+    **row = (Evaluation){0};
+    point_row(t, t->n++);
     if (t->n_var > 0)
         memset((*row)->x, 0, t->n_var * sizeof *t->x);
     evaluation_forget(*row, t->n_obj, t->n_extra);
@@ -186,7 +184,7 @@ Status evaluation_table_check(const EvaluationTable *t, Err *err)
 
 void evaluation_table_free(EvaluationTable *t)
 {
-    for (size_t i = 0; i < t->n_used; i++)
+    for (size_t i = 0; i < t->n; i++)
         free(t->row[i].room);
     free(t->row);
 #define X(array, width) free(t->array);

@@ -99,7 +99,7 @@ void evaluation_set_outcome(Evaluation *e, Outcome outcome, const char *reason);
 typedef Status (*EvaluationFn)(const Evaluation *e, void *user, Err *err); /* the row holds until it returns */
 
 typedef struct {
-    size_t n, n_max, n_used;            /* n_used: rows that have had content */
+    size_t n, n_max;
     size_t n_var, n_obj, n_extra, n_sd; /* n_sd: n_obj, or 0 */
     Evaluation *row;                    /* (n) */
     double *x, *f, *sd, *extra;         /* (n, n_var) (n, n_obj) (n, n_sd) (n, n_extra) */

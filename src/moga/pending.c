@@ -71,8 +71,7 @@ int pending_hand(Pending *p, Question *q)
     return 1;
 }
 
-Status pending_tell(Pending *p, size_t number, const double f[], const double g[], int ok, const void *parts,
-                    size_t size, Err *err)
+Status pending_tell(Pending *p, size_t number, int ok, const void *parts, size_t size, double **f, Err *err)
 {
     const size_t i = number - p->n_entered - 1;
     if (number <= p->n_entered || i >= p->n_handed || pending_at(p, i)->is_told)
@@ -82,9 +81,7 @@ Status pending_tell(Pending *p, size_t number, const double f[], const double g[
         TRY_ROOM(place->parts, size, "a part of an evaluation", err);
         memcpy(place->parts, parts, size);
     }
-    memcpy(numbers(p, i) + p->n_var, f, p->n_obj * sizeof *f);
-    if (p->n_con > 0)
-        memcpy(numbers(p, i) + p->n_var + p->n_obj, g, p->n_con * sizeof *g);
+    *f = numbers(p, i) + p->n_var;
     place->ok = ok != 0;
     place->is_told = 1;
     while (p->n_known < p->n && pending_at(p, p->n_known)->is_told)

@@ -43,10 +43,8 @@ Status pending_add(Pending *p, const Question *q, Err *err);
 /* The next question that is not handed out; 0: there is none. */
 int pending_hand(Pending *p, Question *q);
 
-/* The answer to question `number`, minimised f and g; parts (size bytes) are copied. */
-Status pending_tell(Pending *p, size_t number, const double f[], const double g[], int ok, const void *parts,
-                    size_t size, Err *err);
-
+/* Question `number` is told; parts (size bytes) are copied, *f is where minimised f and g are to be put. */
+Status pending_tell(Pending *p, size_t number, int ok, const void *parts, size_t size, double **f, Err *err);
 void pending_enter(Pending *p); /* the first one is answered and has entered */
 
 int pending_has(const Pending *p, const double x[]);

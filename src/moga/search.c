@@ -131,10 +131,10 @@ size_t search_at_once(const SearchConfig *c)
 Status search_tell(Search *s, size_t number, const Evaluation *e, const void *parts, Err *err)
 {
     const Problem *p = s->common.problem;
-    double *f = s->scratch.f, *g = s->scratch.g;
-    problem_judge(p, e, f, g);
-    return pending_tell(&s->common.pending, number, f, g, e->outcome == OUTCOME_OK, parts, p->n_cheap * p->part_size,
-                        err);
+    double *f;
+    TRY(pending_tell(&s->common.pending, number, e->outcome == OUTCOME_OK, parts, p->n_cheap * p->part_size, &f, err));
+    problem_judge(p, e, f, f + p->n_obj);
+    return STATUS_OK;
 }
 
 /* -- life ---------------------------------------------------------------------------------------------------------- */

@@ -115,34 +115,28 @@ static void fill_niches(Selection *s, size_t n_list, size_t wanted, Random *rand
     }
 }
 
-typedef struct {
-    const double *violation, *behind; /* violation NULL: none */
-} Achievement;
-
-static int compare_achievement(const void *first, const void *second, void *achievement)
-{
-    const size_t a = *(const size_t *)first, b = *(const size_t *)second;
-    const Achievement *w = achievement;
-    const double violated = w->violation ? w->violation[a] - w->violation[b] : 0.0;
-    const double more = violated != 0.0 ? violated : w->behind[a] - w->behind[b];
-    return more != 0.0 ? (more > 0.0 ? 1 : -1) : (a > b) - (a < b);
-}
-
-/* Those that are least behind the levels, of whichever is most behind. */
+/* Those that violate less, and of these those that are least behind the levels, of whichever is most behind. */
 static void take_achieving(Selection *s, size_t n, const double F[], const double violation[], size_t keep)
 {
     nondominated_sort(n, s->n_obj, F, violation, s->rank, s->scratch);
     normalisation_fit_range(&s->normalisation, rows_of_layer(s, n, 0), s->list, F);
     for (size_t i = 0; i < n; i++) {
-        s->list[i] = i;
         s->distance[i] = -INFINITY;
         for (size_t k = 0; k < s->n_obj; k++)
             s->distance[i] =
                 fmax(s->distance[i], normalised_behind(&s->normalisation, k, s->aspire[k], F[i * s->n_obj + k]));
     }
-    qsort_r(s->list, n, sizeof *s->list, compare_achievement, &(Achievement){violation, s->distance});
-    for (size_t i = 0; i < n && i < keep; i++)
-        s->taken[s->list[i]] = 1;
+    for (size_t taken = 0; taken < n && taken < keep; taken++) {
+        size_t best = SIZE_MAX;
+        for (size_t i = 0; i < n; i++) {
+            const int comes_first =
+                best == SIZE_MAX || (violation && violation[i] != violation[best] ? violation[i] < violation[best]
+                                                                                  : s->distance[i] < s->distance[best]);
+            if (comes_first && !s->taken[i])
+                best = i;
+        }
+        s->taken[best] = 1;
+    }
 }
 
 /* Takes whole layers, then fills the niches from the one that does not fit. */

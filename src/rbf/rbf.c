@@ -218,17 +218,6 @@ void model_leave_one_out(Worker *k, size_t n, size_t n_tail)
     }
 }
 
-static void standardise(const Rbf *m, Output *o, const double f[])
-{
-    double mean = 0.0, square = 0.0;
-    for (size_t i = 0; i < m->n; i++)
-        mean += f[i] / (double)m->n;
-    for (size_t i = 0; i < m->n; i++)
-        square += (f[i] - mean) * (f[i] - mean) / (double)m->n;
-    o->mean = mean;
-    o->scale = square > 0.0 ? sqrt(square) : 1.0;
-}
-
 /* A w + P b = y, standardised, and the leave-one-out errors, with the first o->n centres; 0: not all of it is finite. A
  * centre that alone determines a coefficient of the tail, as where all others have the same value of a variable, leaves
  * no error to compute. */
@@ -251,20 +240,6 @@ static int fit_with_tail(const Rbf *m, Worker *k, Output *o, RbfTail tail)
     return isfinite(square);
 }
 
-/* The mean of the values stands for an output that cannot be fitted. */
-static void leave_out(const Rbf *m, Output *o, const double f[])
-{
-    const double n = (double)m->n;
-    o->is_left_out = 1;
-    o->n_tail = 1;
-    o->tail[0] = 0.0;
-    memset(o->weight, 0, m->n * sizeof *o->weight);
-    memset(o->S, 0, (m->n_dim + 1) * m->stride * sizeof *o->S); /* whatever they are: the distances count for nothing */
-    for (size_t i = 0; i < m->n; i++)
-        o->leave_one_out[i] = (f[i] - o->mean) * n / (n - 1.0);
-    o->explained = 0.0;
-}
-
 static void fit_output(const Rbf *m, Worker *k, Output *o, const double f[], const double noise[])
 {
     memcpy(k->noise, noise, m->n * sizeof *noise);
@@ -278,8 +253,18 @@ static void fit_output(const Rbf *m, Worker *k, Output *o, const double f[], con
         return;
     }
     o->n = m->n;
-    if (!fit_with_tail(m, k, o, o->form.tail) && !fit_with_tail(m, k, o, RBF_CONSTANT))
-        leave_out(m, o, f);
+    if (fit_with_tail(m, k, o, o->form.tail) || fit_with_tail(m, k, o, RBF_CONSTANT))
+        return;
+
+    /* The mean of the values stands for an output that cannot be fitted; the distances count for nothing. */
+    const double n = (double)m->n;
+    o->is_left_out = 1;
+    o->n_tail = 1;
+    o->tail[0] = o->explained = 0.0;
+    memset(o->weight, 0, m->n * sizeof *o->weight);
+    memset(o->S, 0, (m->n_dim + 1) * m->stride * sizeof *o->S);
+    for (size_t i = 0; i < m->n; i++)
+        o->leave_one_out[i] = (f[i] - o->mean) * n / (n - 1.0);
 }
 
 void model_fit(Rbf *m)
@@ -308,29 +293,31 @@ static double log_away(double u)
     return log(u < 1e-9 ? 1e-9 : u);
 }
 
-static void place(Rbf *m, size_t i, size_t d, double u)
-{
-    double *c = m->C + d * m->stride + i;
-    c[0] = u;
-    c[m->n_dim * m->stride] = log_away(u);
-    c[2 * m->n_dim * m->stride] = log_away(1.0 - u);
-}
-
 Status model_take(Rbf *m, size_t n, const double X[], const double F[], const double noise[], Err *err)
 {
     if (n < 2 || n > m->n_max)
         return fail(err, STATUS_INTERNAL, "interpolant: %zu centres, wanted 2 to %zu", n, m->n_max);
     m->n = n;
     for (size_t i = 0; i < n; i++) {
-        for (size_t d = 0; d < m->n_dim; d++)
-            place(m, i, d, X[i * m->n_dim + d]);
+        for (size_t d = 0; d < m->n_dim; d++) {
+            double *c = m->C + d * m->stride + i, u = c[0] = X[i * m->n_dim + d];
+            c[m->n_dim * m->stride] = log_away(u);
+            c[2 * m->n_dim * m->stride] = log_away(1.0 - u);
+        }
         for (size_t k = 0; k < m->n_out; k++) {
             m->F[k * m->n_max + i] = F[i * m->n_out + k];
             m->noise[k * m->n_max + i] = noise ? noise[i * m->n_out + k] : 1.0;
         }
     }
     for (size_t k = 0; k < m->n_out; k++) {
-        standardise(m, &m->output[k], m->F + k * m->n_max);
+        const double *f = m->F + k * m->n_max;
+        double mean = 0.0, square = 0.0;
+        for (size_t i = 0; i < n; i++)
+            mean += f[i] / (double)n;
+        for (size_t i = 0; i < n; i++)
+            square += (f[i] - mean) * (f[i] - mean) / (double)n;
+        m->output[k].mean = mean;
+        m->output[k].scale = square > 0.0 ? sqrt(square) : 1.0;
         if (!isfinite(m->output[k].mean) || !isfinite(m->output[k].scale))
             return bad_data(err, "interpolant: a value of output %zu of %zu designs is not finite", k + 1, m->n);
     }
@@ -412,12 +399,6 @@ void rbf_eval(const Rbf *m, size_t n, const double X[], double F[], double E[])
     }
 }
 
-static double tail_slope(size_t n_dim, const Output *o, size_t d, double x)
-{
-    return (o->n_tail > 1 ? 2.0 * o->tail[1 + d] : 0.0) +
-           (o->n_tail > 1 + n_dim ? 4.0 * (2.0 * x - 1.0) * o->tail[1 + n_dim + d] : 0.0);
-}
-
 /* Sums over the centres; of variables first. */
 typedef struct {
     double x[RBF_BLOCK * RBF_DIM_MAX], by_u[RBF_BLOCK * RBF_DIM_MAX]; /* (n_dim, RBF_BLOCK) */
@@ -470,9 +451,11 @@ static void slope_output(const Rbf *m, const Output *o, size_t n, const double X
         for (size_t d = 0; d < n_dim; d++) {
             const size_t at = d * RBF_BLOCK + p;
             const double *G = s.G + at * 4, along = (G[0] + G[1]) + (G[2] + G[3]);
+            const double linear = o->n_tail > 1 ? 2.0 * o->tail[1 + d] : 0.0,
+                         quadratic = o->n_tail > 1 + n_dim ? o->tail[1 + n_dim + d] : 0.0;
             J[p * m->n_out * n_dim + d] =
                 o->scale * (2.0 * (s.x[at] * s.sum[p] - along) * s.by_u[at] + s.additive[p * n_dim + d] +
-                            tail_slope(n_dim, o, d, X[p * n_dim + d]));
+                            (linear + 4.0 * (2.0 * X[p * n_dim + d] - 1.0) * quadratic));
         }
     }
 }
@@ -499,11 +482,6 @@ double rbf_explained(const Rbf *m, size_t output)
     return m->output[output].explained;
 }
 
-static int form_is_known(RbfForm f)
-{
-    return f.kernel < RBF_N_KERNELS && f.tail < RBF_N_TAILS;
-}
-
 void rbf_pack(Rbf *m, Pack *p)
 {
     pack_size(p, &m->n_tuned, UINT32_MAX);
@@ -516,7 +494,7 @@ void rbf_pack(Rbf *m, Pack *p)
         pack_numbers(p, o->shape.theta, m->n_dim, DBL_MIN, DBL_MAX);
         pack_numbers(p, o->shape.warp, 2, DBL_MIN, DBL_MAX);
         pack_numbers(p, o->step, m->n_dim + 3, DBL_MIN, DBL_MAX);
-        p->faulty = p->faulty || !form_is_known(form);
+        p->faulty = p->faulty || form.kernel >= RBF_N_KERNELS || form.tail >= RBF_N_TAILS;
         if (!p->faulty)
             o->form = form;
     }

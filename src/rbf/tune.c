@@ -25,18 +25,6 @@ static void read_parameters(const Rbf *m, const double p[], Shape *shape, double
     *nugget = exp(p[m->n_dim + 2]);
 }
 
-/* The bounds of theta and warp only keep exp finite where the data say nothing: far wider ones change no front
- * (docs/measured/constants.csv). All of the variance may be noise. */
-static double min_parameter(const Rbf *m, size_t i)
-{
-    return log(i < m->n_dim + 2 ? 1e-4 : NUGGET_MIN);
-}
-
-static double max_parameter(const Rbf *m, size_t i)
-{
-    return log(i < m->n_dim + 2 ? 50.0 : 1.0);
-}
-
 /* Minus the logarithm of the priors, and its gradient. */
 static double prior(const Rbf *m, size_t n, const double p[], double gradient[])
 {
@@ -50,20 +38,6 @@ static double prior(const Rbf *m, size_t n, const double p[], double gradient[])
         gradient[i] = off / spread;
     }
     return l;
-}
-
-/* Turns the inverse in A into v_ij = (w_i w_j / s2 - inv(A)_ij) d phi_ij / d (r^2), i > j, with 0 on the diagonal;
- * returns sum_i noise_i (w_i^2 / s2 - inv(A)_ii). */
-static double weigh_pairs(Worker *k, size_t n, double s2)
-{
-    double trace = 0.0;
-    for (size_t j = 0; j < n; j++) {
-        double *v = k->A + j * n;
-        trace += k->noise[j] * (k->w[j] * k->w[j] / s2 - v[j]);
-        kernel_weigh(n - j, k->slope + j * n + j, k->w + j, k->w[j], s2, v + j);
-        v[j] = 0.0;
-    }
-    return trace;
 }
 
 /* Subtracts from the gradient, with v symmetric, q its row sums and s the warped and scaled centres,
@@ -114,9 +88,19 @@ static double likelihood(const Rbf *m, Worker *k, size_t n, RbfForm form, const 
 static void likelihood_slope(const Rbf *m, Worker *k, size_t n, RbfForm form, const Shape *shape, double s2,
                              double gradient[])
 {
+    double trace = 0.0;
     model_invert((int)n, k->A, (int)n);
     LAPACKE_dlauum_work(LAPACK_COL_MAJOR, 'L', (int)n, k->A, (int)n);
-    gradient[m->n_dim + 2] -= 0.5 * form.nugget * weigh_pairs(k, n, s2);
+
+    /* The inverse becomes v_ij = (w_i w_j / s2 - inv(A)_ij) d phi_ij / d (r^2), i > j, with 0 on the diagonal; trace:
+     * sum_i noise_i (w_i^2 / s2 - inv(A)_ii). */
+    for (size_t j = 0; j < n; j++) {
+        double *v = k->A + j * n;
+        trace += k->noise[j] * (k->w[j] * k->w[j] / s2 - v[j]);
+        kernel_weigh(n - j, k->slope + j * n + j, k->w + j, k->w[j], s2, v + j);
+        v[j] = 0.0;
+    }
+    gradient[m->n_dim + 2] -= 0.5 * form.nugget * trace;
     pull_back(m, k, n, shape, gradient);
 }
 
@@ -159,8 +143,12 @@ static int climb(const Rbf *m, Worker *k, size_t n, const Output *o, RbfForm *fo
         }
         if (step < steps)
             likelihood_slope(m, k, n, *form, &at, s2, g);
-        for (size_t i = 0; i < n_p && step < steps; i++)
-            p[i] = fmin(fmax(p[i] + rprop_move(g[i], &last[i], &k->step[i]), min_parameter(m, i)), max_parameter(m, i));
+        for (size_t i = 0; i < n_p && step < steps; i++) {
+            /* The bounds of theta and warp only keep exp finite where the data say nothing: far wider ones change no
+             * front (docs/measured/constants.csv). All of the variance may be noise. */
+            const double least = log(i < i_nugget ? 1e-4 : NUGGET_MIN), most = log(i < i_nugget ? 50.0 : 1.0);
+            p[i] = fmin(fmax(p[i] + rprop_move(g[i], &last[i], &k->step[i]), least), most);
+        }
     }
     read_parameters(m, k->best_p, shape, &form->nugget);
     return is_best;
@@ -177,20 +165,6 @@ static double trial_error(const Rbf *m, Worker *k, size_t n, RbfForm *form, cons
     }
     model_leave_one_out(k, n, k->n_tail);
     return cblas_ddot((int)n, k->q, 1, k->q, 1) / (double)n;
-}
-
-/* At most TUNE_CENTRES_MAX centres, evenly spread over their order: a likelihood costs n^3. */
-static size_t choose_tuning_set(const Rbf *m, Worker *k, const Output *o, const double f[], const double noise[])
-{
-    const size_t n = MIN_OF(m->n, TUNE_CENTRES_MAX);
-    for (size_t i = 0; i < n; i++) {
-        const size_t from = i * m->n / n;
-        for (size_t d = 0; d < 3 * m->n_dim; d++)
-            k->C[d * m->stride + i] = m->C[d * m->stride + from];
-        k->y[i] = (f[from] - o->mean) / o->scale;
-        k->noise[i] = noise[from];
-    }
-    return n;
 }
 
 /* Climbs with one form from these scales; the better of this and the best so far stays in the worker. An additive part
@@ -211,13 +185,22 @@ static void try_form(const Rbf *m, Worker *k, size_t n, const Output *o, RbfForm
     }
 }
 
-/* The first time every form is tried; later the present one and, in turn, a challenger, which is tuned where it is
- * nearly as good with the scales of the present one. */
-static void try_forms(const Rbf *m, Worker *k, size_t n, const Output *o)
+/* On at most TUNE_CENTRES_MAX centres, evenly spread over their order: a likelihood costs n^3. The first time every
+ * form is tried; later the present one and, in turn, a challenger, which is tuned where it is nearly as good with the
+ * scales of the present one. */
+static void tune_output(const Rbf *m, Worker *k, Output *o, const double f[], const double noise[])
 {
-    const size_t n_forms = RBF_N_KERNELS * RBF_N_TAILS;
+    const size_t n = MIN_OF(m->n, TUNE_CENTRES_MAX), n_forms = RBF_N_KERNELS * RBF_N_TAILS;
     const double nugget = fmax(o->form.nugget, NUGGET_START);
     const int is_first = m->n_tuned == 0;
+    for (size_t i = 0; i < n; i++) {
+        const size_t from = i * m->n / n;
+        for (size_t d = 0; d < 3 * m->n_dim; d++)
+            k->C[d * m->stride + i] = m->C[d * m->stride + from];
+        k->y[i] = (f[from] - o->mean) / o->scale;
+        k->noise[i] = noise[from];
+    }
+    k->min_error = k->likeliest[RBF_CONSTANT] = k->likeliest[RBF_LINEAR] = k->likeliest[RBF_QUADRATIC] = INFINITY;
     if (!is_first) {
         RbfForm present = o->form;
         if (present.nugget < NUGGET_START && trial_error(m, k, n, &present, &o->shape, 0) < EXACT_ERROR)
@@ -233,13 +216,6 @@ static void try_forms(const Rbf *m, Worker *k, size_t n, const Output *o)
                  trial_error(m, k, n, &trial, &k->best_shape, 0) < CHALLENGE_MAX * k->min_error)
             try_form(m, k, n, o, form, &k->best_shape, TUNE_STEPS);
     }
-}
-
-static void tune_output(const Rbf *m, Worker *k, Output *o, const double f[], const double noise[])
-{
-    const size_t n = choose_tuning_set(m, k, o, f, noise);
-    k->min_error = k->likeliest[RBF_CONSTANT] = k->likeliest[RBF_LINEAR] = k->likeliest[RBF_QUADRATIC] = INFINITY;
-    try_forms(m, k, n, o);
     if (k->min_error < INFINITY) {
         o->form = k->best_form;
         model_copy_shape(m, &o->shape, &k->best_shape);
