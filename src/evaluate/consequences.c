@@ -74,10 +74,9 @@ const char *damage_words(const SimResult *r, char text[DAMAGE_WORDS_MAX])
         const int state = damage_state(p, is_drift ? r->drift_ratio_max : worst);
         const char *unit = is_drift ? " %" : " g";
         figure_text(worst, NAN, NAN, "", figure);
-        used += snprintf(text + used, DAMAGE_WORDS_MAX - (size_t)used, "%s%s %s%s (%s%s; complete from %.3g%s)",
+        used += snprintf(text + used, DAMAGE_WORDS_MAX - (size_t)used, "%s%s: %s%s (%s%s)",
                          p ? ", " : "damage by Hazus: ", DAMAGE_PARTS[p].words, state == DAMAGE_STATES ? "beyond " : "",
-                         damage_word(state), figure, unit,
-                         (is_drift ? 100 : 1) * DAMAGE_PARTS[p].median[DAMAGE_STATES - 1], unit);
+                         damage_word(state), figure, unit);
     }
     figure_text(100 * damage_loss(r), NAN, NAN, "", figure);
     if (r->outcome == RUN_OK)
