@@ -63,7 +63,7 @@ static Status search(const Args *args, const Settings *s, const Problem *p, Err 
     Writing w = {.problem = p, .f = o.stream, .noisy = s->problem.noisy == NOISY_YES};
     write_header(&w);
     omp_set_num_threads((int)threads_wanted(s->search.threads));
-    const Status status = search_run(p, &config, write_new, &w, &reason, err);
+    const Status status = search_run(p, &config, NULL, write_new, &w, &reason, err);
     if (status != STATUS_OK) {
         output_abandon(&o);
         return status;

@@ -309,7 +309,7 @@ static void run(World *w, const SearchConfig *c, const SearchStart *start, Seen 
     StopReason reason;
     memset(seen, 0, sizeof *seen);
     settle(w);
-    CHECK_OK(search_resume(&w->problem, c, start, observe, seen, &reason, &err), &err);
+    CHECK_OK(search_run(&w->problem, c, start, observe, seen, &reason, &err), &err);
     assert_int_equal(reason, STOP_EVALUATIONS);
 }
 

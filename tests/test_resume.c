@@ -96,7 +96,7 @@ static void forget(Seen *s)
 static void run(World *w, const SearchConfig *c, const SearchStart *start, Seen *seen)
 {
     memset(seen, 0, sizeof *seen);
-    CHECK_OK(search_resume(&w->problem, c, start, observe, seen, &seen->reason, &err), &err);
+    CHECK_OK(search_run(&w->problem, c, start, observe, seen, &seen->reason, &err), &err);
 }
 
 static void assert_same_search(const World *w, const Seen *a, const Seen *b)
@@ -252,7 +252,7 @@ static void refuse(const SearchConfig *c, const SearchStart *start)
 {
     err = (Err){0};
     StopReason reason;
-    assert_int_equal(search_resume(&here.problem, c, start, observe, &resumed, &reason, &err), STATUS_BAD_DATA);
+    assert_int_equal(search_run(&here.problem, c, start, observe, &resumed, &reason, &err), STATUS_BAD_DATA);
     assert_non_null(strstr(err.text, "does not fit"));
     assert_int_equal(resumed.moments.n, 0);
 }

@@ -166,7 +166,7 @@ static void run(World *w, Seen *s, const SearchStart *start)
     const SearchConfig config = config_of();
     StopReason reason;
     s->world = w;
-    CHECK_OK(search_resume(&w->problem, &config, start, observe, s, &reason, &err), &err);
+    CHECK_OK(search_run(&w->problem, &config, start, observe, s, &reason, &err), &err);
     assert_int_equal(reason, STOP_EVALUATIONS);
 }
 

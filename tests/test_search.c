@@ -120,7 +120,7 @@ static int observe(const SearchView *v, const SearchTime *time, void *user)
 static StopReason run(World *w, const SearchConfig *c, Seen *seen)
 {
     StopReason reason = STOP_NONE;
-    CHECK_OK(search_run(&w->problem, c, observe, seen, &reason, &err), &err);
+    CHECK_OK(search_run(&w->problem, c, NULL, observe, seen, &reason, &err), &err);
     assert_int_equal(seen->n, w->n_rows);
     assert_int_equal(w->n_repeated, 0);
     assert_at_most(seen->n, c->max_evals);
@@ -201,7 +201,7 @@ TEST(answers_that_no_surrogate_fits_do_not_end_the_search)
         here.problem = function_problem(&here.function, 5, 2, 0, here.lower, here.upper, sums, &here);
         SearchConfig c = search_config(seed, 96, 80);
         c.max_evals = 400;
-        CHECK_OK(search_run(&here.problem, &c, observe, &seen, &reason, &err), &err);
+        CHECK_OK(search_run(&here.problem, &c, NULL, observe, &seen, &reason, &err), &err);
         assert_int_equal(seen.n, 400);
     }
 }
@@ -353,7 +353,7 @@ TEST(limits_that_say_no_more_than_0_where_they_are_kept_are_learned_nearly_as_we
             SearchConfig c = search_config(1 + seed, 92, 400);
             c.max_evals = 300;
             cost[seed] = INFINITY;
-            CHECK_OK(search_run(&p, &c, least_cost, &cost[seed], &reason, &err), &err);
+            CHECK_OK(search_run(&p, &c, NULL, least_cost, &cost[seed], &reason, &err), &err);
         }
         sort_values(SEEDS, cost);
         median[mode] = cost[SEEDS / 2];
@@ -639,11 +639,11 @@ TEST(settings_that_make_no_sense_are_refused_by_name)
     world(&here, 6, 2);
     SearchConfig c = config(40, 50);
     c.population = 2;
-    assert_int_equal(search_run(&here.problem, &c, NULL, NULL, &reason, &err), STATUS_BAD_DATA);
+    assert_int_equal(search_run(&here.problem, &c, NULL, NULL, NULL, &reason, &err), STATUS_BAD_DATA);
     assert_non_null(strstr(err.text, "population"));
     c = config(40, 50);
     here.lower[3] = 2.0;
-    assert_int_equal(search_run(&here.problem, &c, NULL, NULL, &reason, &err), STATUS_BAD_DATA);
+    assert_int_equal(search_run(&here.problem, &c, NULL, NULL, NULL, &reason, &err), STATUS_BAD_DATA);
     assert_non_null(strstr(err.text, "variable 4"));
 }
 

@@ -60,7 +60,7 @@ Status search_course(const Settings *settings, const Problem *p, SurrogateUse su
     s.search.max_evals = (long)c->n_max;
     s.search.surrogate = surrogate;
     const SearchConfig config = search_config_of(&s);
-    return search_run(p, &config, note, c, &reason, err);
+    return search_run(p, &config, NULL, note, c, &reason, err);
 }
 
 /* The plain search has as many evaluations as the largest factor takes. */

@@ -324,7 +324,7 @@ static Status run_search(const Loop *l, Err *err)
     config.n_given = 1;
     config.max_evals = l->curve.n;
     TRY(curve_open(&c, l, "search", err));
-    const Status status = search_run(l->problem, &config, note, &c, &reason, err);
+    const Status status = search_run(l->problem, &config, NULL, note, &c, &reason, err);
     hypervolume_free(c.volume);
     return status;
 }

@@ -221,7 +221,7 @@ static Status check_search(Selftest *t, Err *err)
     TRY(set_all(&s, SETTINGS, N_OF(SETTINGS), err));
     const SearchConfig config = search_config_of(&s);
     omp_set_num_threads(1);
-    TRY(search_run(&p, &config, measure_front, &igd, &reason, err));
+    TRY(search_run(&p, &config, NULL, measure_front, &igd, &reason, err));
     compare(t, "search", "igd_plus", igd, 0.0315, 0.3);
     return STATUS_OK;
 }

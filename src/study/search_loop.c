@@ -14,18 +14,6 @@ typedef struct {
     SearchTime time;
 } Loop;
 
-/* The answer of before to this question, or NULL. */
-static const Evaluation *find_known(Loop *l, const Question *q)
-{
-    while (l->next_known < l->n_known && l->known[l->next_known].id < (long)q->number)
-        l->next_known++;
-    const Evaluation *e = &l->known[l->next_known];
-    return l->next_known < l->n_known && e->id == (long)q->number &&
-                   memcmp(e->x, q->x, l->problem->n_var * sizeof *q->x) == 0
-               ? e
-               : NULL;
-}
-
 /* Until the search ends, or the observer wants no more. */
 static Status run(Loop *l, ObserveFn observe, void *user, StopReason *reason, Err *err)
 {
@@ -37,16 +25,20 @@ static Status run(Loop *l, ObserveFn observe, void *user, StopReason *reason, Er
         l->time.choosing += clock_seconds() - before;
         TRY(status);
         if (move == SEARCH_ASKS) { /* a design, whose answer may be known from before */
-            const Evaluation *known = find_known(l, &q);
-            TRY(known ? search_tell(l->search, q.number, known, NULL, err)
-                      : queue_ask(l->queue,
-                                  &(Asked){.id = (long)q.number,
-                                           .x = q.x,
-                                           .repeat = q.repeat,
-                                           .kind = q.kind,
-                                           .n_parts = q.n_parts,
-                                           .cheap_parts = q.cheap_parts},
-                                  err));
+            while (l->next_known < l->n_known && l->known[l->next_known].id < (long)q.number)
+                l->next_known++;
+            const Evaluation *known = &l->known[l->next_known];
+            const int is_known = l->next_known < l->n_known && known->id == (long)q.number &&
+                                 memcmp(known->x, q.x, l->problem->n_var * sizeof *q.x) == 0;
+            TRY(is_known ? search_tell(l->search, q.number, known, NULL, err)
+                         : queue_ask(l->queue,
+                                     &(Asked){.id = (long)q.number,
+                                              .x = q.x,
+                                              .repeat = q.repeat,
+                                              .kind = q.kind,
+                                              .n_parts = q.n_parts,
+                                              .cheap_parts = q.cheap_parts},
+                                     err));
         } else if (move == SEARCH_WAITS) {
             const double asked = clock_seconds();
             status = queue_next(l->queue, &done, err);
@@ -69,8 +61,8 @@ static Status run(Loop *l, ObserveFn observe, void *user, StopReason *reason, Er
     return STATUS_OK;
 }
 
-Status search_resume(const Problem *problem, const SearchConfig *config, const SearchStart *start, ObserveFn observe,
-                     void *user, StopReason *reason, Err *err)
+Status search_run(const Problem *problem, const SearchConfig *config, const SearchStart *start, ObserveFn observe,
+                  void *user, StopReason *reason, Err *err)
 {
     Loop l = {.problem = problem, .config = config, .start = clock_seconds()};
     *reason = STOP_NONE;
@@ -84,10 +76,4 @@ Status search_resume(const Problem *problem, const SearchConfig *config, const S
     queue_close(l.queue);
     search_free(l.search);
     return status;
-}
-
-Status search_run(const Problem *problem, const SearchConfig *config, ObserveFn observe, void *user, StopReason *reason,
-                  Err *err)
-{
-    return search_resume(problem, config, NULL, observe, user, reason, err);
 }

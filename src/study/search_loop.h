@@ -20,10 +20,7 @@ typedef struct {
 /* Called after every step; return non-zero to stop. */
 typedef int (*ObserveFn)(const SearchView *view, const SearchTime *time, void *user);
 
-Status search_run(const Problem *problem, const SearchConfig *config, ObserveFn observe, void *user, StopReason *reason,
-                  Err *err);
-
 /* From `start` (NULL: from the beginning). A search that has reached its limits evaluates nothing and does not call
  * observe. */
-Status search_resume(const Problem *problem, const SearchConfig *config, const SearchStart *start, ObserveFn observe,
-                     void *user, StopReason *reason, Err *err);
+Status search_run(const Problem *problem, const SearchConfig *config, const SearchStart *start, ObserveFn observe,
+                  void *user, StopReason *reason, Err *err);

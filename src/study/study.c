@@ -225,7 +225,7 @@ static Status ask_first(Study *study, Err *err)
     p.n_workers = 1;
     p.observer = (Observer){waits_for_first, take_first, study};
     TRY(search_config(study, &config, err));
-    const Status status = search_run(&p, &config, end_first, NULL, &reason, err);
+    const Status status = search_run(&p, &config, NULL, end_first, NULL, &reason, err);
     if (status == STATUS_STOPPED && !has_first(study)) {
         study->summary->stopped = study->late ? STOP_TIME : STOP_ASKED;
         return fail(err, status, "%s: stopped before its first design succeeded; nothing is stored",
@@ -413,8 +413,8 @@ static Status run_search(Study *study, Err *err)
     omp_set_num_threads(adapter_threads(study->adapter));
     adapter_observe(study->adapter, &(Observer){may_go_on, evaluation_done, study});
     const Status status =
-        search_resume(adapter_problem(study->adapter), &config, start.n + start.n_later > 0 ? &start : NULL, observe,
-                      study, &study->summary->stopped, err);
+        search_run(adapter_problem(study->adapter), &config, start.n + start.n_later > 0 ? &start : NULL, observe,
+                   study, &study->summary->stopped, err);
     return note_stop(study, status, err);
 }
 
