@@ -61,24 +61,8 @@ static void weigh_designs(const Archive *a, const Criteria *q, size_t importance
     importance[knee] += importance_of_extremes(q);
 }
 
-/* Of the front's designs with any importance the one with the fewest replicates, of these the most important one;
- * archive.n where none is left. */
-static size_t pick(const Common *c, const size_t importance[])
-{
-    const Archive *a = &c->archive;
-    size_t best = a->n;
-    for (size_t i = 0; i < a->n_front; i++) {
-        const size_t row = a->front[i];
-        const int comes_first = best == a->n || a->replicates[row] < a->replicates[best] ||
-                                (a->replicates[row] == a->replicates[best] && importance[row] > importance[best]);
-        if (importance[row] > 0 && a->replicates[row] < c->config->replicates_max && comes_first &&
-            !pending_has(&c->pending, a->X + row * a->n_var))
-            best = row;
-    }
-    return best;
-}
-
-/* The front has been measured, as it is now. Extremes with a single replicate go alone: where they prove wrong there
+/* The front has been measured, as it is now. Of its designs with any importance comes first the one with the fewest
+ * replicates, of these the most important one. Extremes with a single replicate go alone: where they prove wrong there
  * are others next time, which are then replicated before anything else. */
 void replication_add(const Common *c, const Criteria *q, Batch *b)
 {
@@ -90,7 +74,18 @@ void replication_add(const Common *c, const Criteria *q, Batch *b)
     if (a->n_front == 0 || b->n >= limit)
         return;
     weigh_designs(a, q, importance);
-    for (size_t row; b->n < limit && (row = pick(c, importance)) < a->n;) {
+    while (b->n < limit) {
+        size_t row = a->n;
+        for (size_t i = 0; i < a->n_front; i++) {
+            const size_t other = a->front[i];
+            const int comes_first = row == a->n || a->replicates[other] < a->replicates[row] ||
+                                    (a->replicates[other] == a->replicates[row] && importance[other] > importance[row]);
+            if (importance[other] > 0 && a->replicates[other] < c->config->replicates_max && comes_first &&
+                !pending_has(&c->pending, a->X + other * a->n_var))
+                row = other;
+        }
+        if (row == a->n)
+            break;
         const int is_new_extreme = importance[row] >= importance_of_extremes(q) && a->replicates[row] == 1;
         if (extremes_alone && !is_new_extreme)
             break;

@@ -129,12 +129,6 @@ static int compare_rows(const void *first, const void *second, void *distance)
     return d[a] != d[b] ? (d[a] > d[b] ? 1 : -1) : (a > b) - (a < b);
 }
 
-static int compare_sizes(const void *first, const void *second)
-{
-    const size_t a = *(const size_t *)first, b = *(const size_t *)second;
-    return (a > b) - (a < b);
-}
-
 static int is_centre(const Archive *a, size_t i)
 {
     int fits = a->usable[i];
@@ -159,7 +153,9 @@ static size_t select_centres(const Surrogate *s, const Archive *a, Infill *near)
         distance[centre[i]] = infill_distance(near, a->F + centre[i] * a->n_obj);
     qsort_r(centre, n, sizeof *centre, compare_rows, distance);
     const size_t n_near = s->n_max - s->n_max / SPREAD_CENTRES_SHARE, n_rest = n - n_near, n_spread = s->n_max - n_near;
-    qsort(centre + n_near, n_rest, sizeof *centre, compare_sizes); /* the rest in the order of evaluation */
+    for (size_t i = n_near; i < n; i++) /* the rest in the order of evaluation */
+        distance[centre[i]] = 0.0;
+    qsort_r(centre + n_near, n_rest, sizeof *centre, compare_rows, distance);
     for (size_t i = 0; i < n_spread; i++)
         centre[n_near + i] = centre[n_near + i * n_rest / n_spread];
     return s->n_max;
