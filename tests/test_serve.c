@@ -271,6 +271,8 @@ TEST(every_address_says_which_methods_it_knows)
     }
     expect_header("\r\nAllow: GET, HEAD, POST\r\n", "PUT", "/%T/0/notes");
     expect_code(400, "POST", "/%T/0/notes", "Content-Length: 0\r\n");
+    expect_header("\r\nAllow: POST\r\n", "GET", "/%T/0/kept");
+    expect_code(400, "POST", "/%T/0/move", "Content-Length: 0\r\n");
     expect_code(404, "POST", "/%T/0/nothing", "Content-Length: 0\r\n");
 }
 

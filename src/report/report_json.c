@@ -148,14 +148,14 @@ json_t *detail_json(const Detail *d, const MeasureOrder *order)
                                       e->pga_g, e->scale, e->stretch, result_json(SCENE_IMPACT, &e->with_core, order),
                                       result_json(SCENE_NO_CORE, &e->no_core, order)));
     }
-    json_t *o = json_of(
-        "floor=%d protection=%s storey_m=%p gap_m=%p thickness_m=%p bumper_n_m=%p building_hz=%p core_hz=%p record=%s "
-        "pga_g=%g scale=%g stretch=%g baselines=%p history_with_core=%p "
-        "history_no_core=%p elsewhere=%p",
-        d->floor + 1, d->protection, json_numbers(n, d->storey_m), json_numbers(n, d->gap_m),
-        json_numbers(n, d->thickness_m), json_numbers(n, d->bumper_n_m), json_numbers(n, d->building_hz),
-        json_numbers(n, d->core_hz), d->record, d->pga_g, d->scale, d->stretch, json_of_baselines(d, order),
-        json_of_history(&d->history[0], d->floor), json_of_history(&d->history[1], d->floor), others);
+    json_t *o =
+        json_of("floor=%d protection=%s storey_m=%p gap_m=%p thickness_m=%p bumper_n_m=%p building_hz=%p record=%s "
+                "pga_g=%g scale=%g stretch=%g baselines=%p history_with_core=%p "
+                "history_no_core=%p elsewhere=%p",
+                d->floor + 1, d->protection, json_numbers(n, d->storey_m), json_numbers(n, d->gap_m),
+                json_numbers(n, d->thickness_m), json_numbers(n, d->bumper_n_m), json_numbers(n, d->building_hz),
+                d->record, d->pga_g, d->scale, d->stretch, json_of_baselines(d, order),
+                json_of_history(&d->history[0], d->floor), json_of_history(&d->history[1], d->floor), others);
     json_t *error = json_array(), *standard = json_array();
     for (int k = 0; k < order->n_obj; k++) {
         json_array_append_new(error, json_number(d->error[order->of[k]]));

@@ -132,8 +132,15 @@ Status on_demand_keep(OnDemand *o, const Run *run, size_t n, double x[], long *i
     Run now = {0}, with = *run;
     Improved tried = {0};
     RunStore *store;
+    if (run->n_front == 0)
+        return run_why_empty(run, err);
     if (n != run->schema.n_var)
         return bad_data(err, "a design of %s has %zu variables", run->folder, run->schema.n_var);
+    for (size_t i = 0; i < run->table.n; i++)
+        if (memcmp(run_x(run, i), x, n * sizeof *x) == 0) {
+            *id = run->table.row[i].id;
+            return STATUS_OK;
+        }
     TRY(record_paths_find(&s, run->provenance, o->moved, err));
     TRY(store_open(&store, run->folder, 0, err));
     with.settings = &s;

@@ -29,7 +29,7 @@ int on_demand_is_of(const OnDemand *o, const Run *run);
 /* text: JSON, to be freed. */
 Status on_demand_design(OnDemand *o, const Run *run, long id, char **text, Err *err);
 
-/* x (n) simulated as the run does and stored in it, of the kind `kept`. */
+/* x (n) simulated as the run does and stored in it, of the kind `kept`, unless the run has it. */
 Status on_demand_keep(OnDemand *o, const Run *run, size_t n, double x[], long *id, Err *err);
 
 Status on_demand_scene(OnDemand *o, const Run *run, char **text, Err *err);

@@ -126,10 +126,10 @@ function growthPart() {
     `(imtet status shows the same); at the end ${show(last.y)} \u00b1 ${show(last.e / 2)}` + " % (standard error of the estimate; band: twice that). A curve that still climbs asks for a longer run."));
 }
 
-// All that provenance.json holds, flat, but for how the model was chosen, which is run.model.
+// All that provenance.json holds, flat, but for how the model was chosen.
 function provenancePart() {
   const { model, ...made } = JSON.parse(run.provenance || "{}");
-  run.model = model;
+  if (model) ladderPart(folded(byId("provenance"), "The model that the study chose"), { ladder: model });
   const facts = (made) => Object.entries(made).flatMap(([key, v]) => (v instanceof Object ? facts(v) : [element("dt", key), element("dd", String(v))]));
   byId("provenance").append(element("dl", ...facts({ folder: run.folder, page: `imtet ${run.version} (${run.revision})`, ...made })),
     element("details", element("summary", "Every setting"), element("pre", { tabindex: "0" }, run.settings)));

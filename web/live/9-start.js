@@ -3,4 +3,4 @@ const later_ = (promise) => promise.catch((error) => byId("live").append(warn(er
 if (run.tower) whatIfPart();
 progressPart();
 later_(runsPart());
-if (run.tower) later_(completeSummary().then(() => startWhatIf(state.marked ?? rowOf.get(run.knee), false)));
+if (run.tower) later_(startWhatIf(state.marked ?? rowOf.get(run.knee), false).then(completeSummary)); // the scene comes at once
