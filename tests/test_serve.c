@@ -626,6 +626,35 @@ static void copy(const char *from, const char *to)
     assert_int_equal(system(command), 0);
 }
 
+/* Resumed, a run that has got a design of a page does what it would have done without it. */
+TEST(a_kept_design_is_of_the_run_and_never_of_its_search)
+{
+    char *rows[2], command[512];
+    Table front = table_of("runs/a/front.csv");
+    json_t *x = json_array();
+    for (size_t j = 0; j < 22; j++)
+        json_array_append_new(x, json_real(front.values[1 + j] * (j ? 1 : 0.999)));
+    copy("runs/a", "odd/0");
+    copy("runs/a", "odd/1");
+    const Served before = serve_here("odd/1");
+    json_decref(post_json("/%T/0/kept", json_pack("{s:o}", "x", x)));
+    end_here(before);
+    for (int i = 0; i < 2; i++) {
+        snprintf(command, sizeof command, "optimize @/odd/%d/settings.ini --max-evals 70 --out @/odd/%d", i, i);
+        expect(0, "", command);
+        snprintf(command, sizeof command,
+                 "cd '%s' && '%s' export odd/%d --all --csv all && grep -c ',kept,' all | grep -qx %d && grep -v "
+                 "',kept,' all | cut -d, -f2,4- > rows && rm -r odd/%d",
+                 place.folder, getenv("IMTET"), i, i, i);
+        assert_int_equal(system(command), 0);
+        rows[i] = read_in_place("rows");
+    }
+    assert_string_equal(rows[0], rows[1]);
+    free(rows[0]);
+    free(rows[1]);
+    table_free(&front);
+}
+
 /* Every listing names it with its reason, and none waits for it. */
 TEST(a_run_that_cannot_be_read_holds_up_no_listing)
 {

@@ -19,7 +19,7 @@ from ._tables import Tabular
 
 Records = np.recarray[Any, np.dtype[np.void]]
 
-_MORE_IS_BETTER, _OUTSIDE = {"ed5_10_pct", "edcs_pct", "ed_devices_pct"}, ("polished", "kept")  # measures; kinds that no search sees
+_MORE_IS_BETTER, _OUTSIDE = {"ed5_10_pct", "edcs_pct", "ed_devices_pct"}, ("polished", "kept")  # measures; kinds no search sees
 _ERRORS = {"coarse": 0.08, "standard": 0.01}  # as numbers, by their steps per contact
 _NOT_OF_THE_PROBLEM = ("search.", "run.", "problem.command", "problem.timeout_s", "sim.threads")
 _FILES = ("motion.record", "motion.records", "motion.forces", "building.model")  # told apart by their content

@@ -28,8 +28,7 @@ function read(path) {
 
 // ---- hands
 async function open(hash = "", path = file) {
-  await page.call("Page.navigate", { url: "about:blank" });
-  await page.call("Page.navigate", { url: pathToFileURL(path).href + hash });
+  await page.call("Page.navigate", { url: "about:blank" }); await page.call("Page.navigate", { url: pathToFileURL(path).href + hash });
   await page.until("document.documentElement?.dataset.ready === 'yes'");
 }
 
@@ -151,8 +150,7 @@ const tried = {
   async "keys move, turn over and hide an axis, and open its menu"() {
     const names = results, focus = (name) => page.evaluate(`document.querySelector(${JSON.stringify(headingOf(name))}).focus()`);
     if (names.length < 3) return;
-    await focus(names[0]); await press("ArrowRight");
-    assert.deepEqual(await shownAxes(), [names[1], names[0], ...names.slice(2)]);
+    await focus(names[0]); await press("ArrowRight"); assert.deepEqual(await shownAxes(), [names[1], names[0], ...names.slice(2)]);
     await press("l"); // the focus went with it
     assert.match(decodeURIComponent(await page.evaluate("location.hash")), new RegExp(`log=${names[0]}`));
     await press("l");
@@ -164,8 +162,7 @@ const tried = {
     assert.equal(await page.evaluate("document.querySelectorAll('#axis-menu:not([hidden]) [role=menuitem]').length"), 7);
     await press("Escape");
     assert.equal(await page.evaluate("document.getElementById('axis-menu').hidden && document.activeElement.dataset.name"), names[0]);
-    await press("Delete"); assert.deepEqual(await shownAxes(), names.slice(1));
-    await click("input[name=axes][value=objectives]");
+    await press("Delete"); assert.deepEqual(await shownAxes(), names.slice(1)); await click("input[name=axes][value=objectives]");
   },
   async "the pointer on a line, a dot or a row shows its design in all three, a click marks it"() {
     await page.evaluate("document.querySelector('g.axis').scrollIntoView({ block: 'center' })");
@@ -194,8 +191,7 @@ const tried = {
     assert.ok(inside > 0 && inside < rows.length);
     await click("#keep"); assert.equal(await counted(), inside);
     assert.match(await page.evaluate("document.getElementById('count').textContent"), new RegExp(`${inside.toLocaleString("en-US")} of ${inside.toLocaleString("en-US")} .*${(rows.length - inside).toLocaleString("en-US")} put aside`));
-    await click("#restore"); assert.equal(await counted(), rows.length);
-    await drag(await boxOf("g.axis .brush .overlay", 0), [0.5, 0.45], [0.5, 1]);
+    await click("#restore"); assert.equal(await counted(), rows.length); await drag(await boxOf("g.axis .brush .overlay", 0), [0.5, 0.45], [0.5, 1]);
     const again = await counted();
     await click("#exclude"); assert.equal(await counted(), rows.length - again);
     assert.equal((await downloaded()).trim().split("\n").length - 1, rows.length - again);
@@ -230,8 +226,7 @@ const tried = {
     const ranks = (v) => v.map((x) => v.filter((y) => y < x).length);
     const [p, q] = [ranks(a), ranks(b)], mean = (v) => v.reduce((s, x) => s + x, 0) / v.length, [mp, mq] = [mean(p), mean(q)];
     const sum = (f) => p.reduce((s, _, i) => s + f(p[i] - mp, q[i] - mq), 0), r = sum((x, y) => x * y) / Math.sqrt(sum((x) => x * x) * sum((_, y) => y * y));
-    await page.evaluate("document.querySelector('g.correlation').scrollIntoView({ block: 'center' })");
-    await settle();
+    await page.evaluate("document.querySelector('g.correlation').scrollIntoView({ block: 'center' })"); await settle();
     const told = await page.evaluate("document.querySelector('g.correlation text').textContent.replace('\u2212', '-')");
     assert.ok(Math.abs(+told - r) < 0.006, `${told} is ${r}`);
     const isConflict = r * run.schema.objectives[0].sense * run.schema.objectives[1].sense < 0; // better in one is worse in the other
@@ -317,20 +312,16 @@ const tried = {
     await press("Escape"); await press("Escape");
   },
   async "an address that no page wrote leaves a page that is drawn"() {
-    await open(`#in=%25&axes=%25&x=%E0%A4%A&weights=%25:3&steps=%2B%25:1:2`);
-    assert.equal(await counted(), rows.length);
-    await open();
+    await open(`#in=%25&axes=%25&x=%E0%A4%A&weights=%25:3&steps=%2B%25:1:2`); assert.equal(await counted(), rows.length); await open();
   },
   async "designs are reached from a picture by keys"() {
     await page.evaluate("document.querySelector('#front .layers').focus()");
     await press("Home"); // the marked design may be the last one
     const first = await page.evaluate("document.querySelector('#tip strong').textContent");
-    await press("ArrowRight");
-    assert.notEqual(await page.evaluate("document.querySelector('#tip strong').textContent"), first);
+    await press("ArrowRight"); assert.notEqual(await page.evaluate("document.querySelector('#tip strong').textContent"), first);
     const lower = await page.evaluate("document.getElementById('tip').getBoundingClientRect().top - Math.min(innerHeight - document.getElementById('tip').offsetHeight - 8, document.querySelector('#front .layers').getBoundingClientRect().bottom)");
     assert.ok(lower >= 0, "what is said of a design lies on no axis");
-    await press("Enter");
-    await page.until("document.getElementById('drawer').dataset.id && !document.getElementById('drawer').hidden");
+    await press("Enter"); await page.until("document.getElementById('drawer').dataset.id && !document.getElementById('drawer').hidden");
     await press("Escape");
   },
   async "undo goes back by one step, as the address tells"() {

@@ -40,8 +40,7 @@ const runs = async () => (await fetch(`${url}runs`)).json();
 // ---- hands
 async function open(name) {
   const at = (await runs()).find((r) => r.name === name).at;
-  await page.call("Page.navigate", { url: `${url}${at}/` });
-  await page.until("document.documentElement?.dataset.ready === 'yes'");
+  await page.call("Page.navigate", { url: `${url}${at}/` }); await page.until("document.documentElement?.dataset.ready === 'yes'");
 }
 const { until, press, mouse, boxOf, click } = page;
 const designShown = (id) => until(`document.getElementById("drawer").dataset.id === "${id}"`);
@@ -53,8 +52,7 @@ async function dragSlider(nth, moves) {
   for (let k = 0; k < moves; k++) {
     await mouse("mouseMoved", x + width * (0.5 + 0.4 * Math.sin(k / 4)), middle); await pause(40);
   }
-  await mouse("mouseReleased", x + width / 2, middle);
-  await until("!document.getElementById('what-if').dataset.busy"); await pause(100);
+  await mouse("mouseReleased", x + width / 2, middle); await until("!document.getElementById('what-if').dataset.busy"); await pause(100);
   return page.evaluate("performance.getEntriesByName('what-if').map((m) => m.duration)");
 }
 
@@ -78,11 +76,9 @@ async function benchSlider(what, nth, moves) {
 
 // The pictures of docs/serve.md.
 async function takePictures() {
-  await open("kobe");
-  await until("document.getElementById('what-if').dataset.turn && document.querySelector('#summary .chart svg')");
+  await open("kobe"); await until("document.getElementById('what-if').dataset.turn && document.querySelector('#summary .chart svg')");
   await dragSlider(10, 16); await click("#keep-trial");
-  await picture(page, join(pictures, "serve-what-if.jpg"), "#what-if"); await click("#kept li button");
-  await click("#designs tbody td button", 1);
+  await picture(page, join(pictures, "serve-what-if.jpg"), "#what-if"); await click("#kept li button"); await click("#designs tbody td button", 1);
   await until("document.getElementById('drawer').dataset.id && !document.querySelector('#drawer .bar + .bar button:nth-child(2)').disabled && document.querySelectorAll('#drawer svg').length >= 4");
   await picture(page, join(pictures, "serve-design.jpg")); await click("#drawer .bar + .bar button", 1);
   await until("document.querySelectorAll('#compared tbody tr').length === 2");
@@ -106,8 +102,7 @@ const tried = {
       if (stored()) break;
     }
     const first = stored() - 1, shows = (generation) => until(`+document.getElementById("live").dataset.generation >= ${generation}`);
-    await open("live"); await shows(first);
-    assert.equal(await page.evaluate("document.getElementById('live').dataset.state"), "running");
+    await open("live"); await shows(first); assert.equal(await page.evaluate("document.getElementById('live').dataset.state"), "running");
     await page.evaluate(`(() => { const part = document.getElementById("live"); window.seen = [+part.dataset.generation];
       new MutationObserver(() => window.seen.at(-1) === +part.dataset.generation || window.seen.push(+part.dataset.generation)).observe(part, { attributeFilter: ["data-generation"] }); })()`);
     live.kill("SIGCONT");
@@ -156,19 +151,16 @@ const tried = {
   },
   async "a slider is moved by the keyboard"() {
     const turn = await page.evaluate("+document.getElementById('what-if').dataset.turn");
-    await page.evaluate("document.querySelectorAll('.slider input[type=range]')[6].focus()");
-    await press("ArrowLeft");
+    await page.evaluate("document.querySelectorAll('.slider input[type=range]')[6].focus()"); await press("ArrowLeft");
     await press("ArrowRight"); // it may stand at an end
     await until(`+document.getElementById("what-if").dataset.turn > ${turn} && !document.getElementById("what-if").dataset.busy`);
   },
   async "what is kept is a design file that simulate reads to the same numbers"() {
     const downloads = join(folder, "downloads");
     mkdirSync(downloads, { recursive: true });
-    await browser.send("Browser.setDownloadBehavior", { behavior: "allow", downloadPath: downloads });
-    await click("#keep-trial");
+    await browser.send("Browser.setDownloadBehavior", { behavior: "allow", downloadPath: downloads }); await click("#keep-trial");
     await page.evaluate("(() => { const s = document.querySelectorAll('.slider input[type=range]')[7]; s.value = +s.min + 0.3 * (s.max - s.min); s.dispatchEvent(new Event('input')); })()");
-    await until("!document.getElementById('what-if').dataset.busy"); await click("#keep-trial");
-    await click("#save-kept");
+    await until("!document.getElementById('what-if').dataset.busy"); await click("#keep-trial"); await click("#save-kept");
     let name;
     for (let k = 0; k < 250 && !name; k++, await pause(20)) name = readdirSync(downloads).find((f) => f.endsWith("-kept.csv"));
     const file = join(downloads, name), words = (await page.evaluate("document.querySelector('#kept + pre').textContent")).trim().split(" ");
@@ -180,11 +172,9 @@ const tried = {
   },
   async "a number beside a slider is typed; one out of its range leaves no number, and says which that is"() {
     const type = (v) => page.evaluate(`(() => { const e = document.querySelector('[name="gap_05_m number"]'); e.value = ${v}; e.dispatchEvent(new Event("change")); })()`);
-    await type(9000);
-    assert.match(await page.evaluate("document.getElementById('place').textContent"), /^gap 5 goes from 1 to 50 mm/);
+    await type(9000); assert.match(await page.evaluate("document.getElementById('place').textContent"), /^gap 5 goes from 1 to 50 mm/);
     assert.equal(await page.evaluate("document.querySelectorAll('#trial').length"), 0);
-    await type(33);
-    await until("document.getElementById('trial') && !document.getElementById('what-if').dataset.busy");
+    await type(33); await until("document.getElementById('trial') && !document.getElementById('what-if').dataset.busy");
     assert.equal(await page.evaluate("document.querySelector('.slider input[name=gap_05_m]').value"), "0.033");
   },
   async "what is kept is a design of the run, of a kind of its own, and comes back with the page"() {
@@ -194,8 +184,7 @@ const tried = {
     const last = rows().at(-1).split(","), j1 = await page.evaluate(`${told}.split("|").at(-1)`);
     assert.equal(rows().length, before + 1);
     assert.ok(j1.includes(`design ${last[0]} of the run`), j1);
-    await page.call("Page.reload");
-    await until(`document.getElementById("kept") && ${told}.includes("design ${last[0]}")`);
+    await page.call("Page.reload"); await until(`document.getElementById("kept") && ${told}.includes("design ${last[0]}")`);
     assert.ok(await page.evaluate(`document.getElementById("overlays").textContent.includes("design ${last[0]}")`));
   },
   async "designs stand side by side with their differences"() {
@@ -203,8 +192,7 @@ const tried = {
     const open = "document.getElementById('drawer').dataset.id"; // the table may move below the pointer as the list above it shrinks
     for (let tries = 0; tries < 4 && !(await page.evaluate(open)); tries++) await click("#designs tbody td button", 1).then(() => until(open, 5)).catch(() => 0);
     await until(open); await until("!document.querySelector('#drawer .bar + .bar button:nth-child(2)').disabled");
-    await click("#drawer .bar + .bar button", 1);
-    await until("document.querySelectorAll('#compared tbody tr').length === 2");
+    await click("#drawer .bar + .bar button", 1); await until("document.querySelectorAll('#compared tbody tr').length === 2");
     const differences = await page.evaluate("Array.from(document.querySelectorAll('#compared .difference'), (e) => e.textContent)");
     assert.ok(differences.length >= 5 && differences.every((text) => /^[+\u2212][\d.]+ %$/.test(text)), differences.join());
     assert.ok((await page.evaluate("document.querySelectorAll('#compare figure svg').length")) >= 4);
@@ -231,8 +219,7 @@ const tried = {
   async "at 50 kB/s a first picture is there within 120 kB, while the rest is loading"() {
     const slow = await browser.openPage(), at = (await runs()).find((r) => r.name === "a").at;
     await slow.call("Network.emulateNetworkConditions", { offline: false, latency: 400, downloadThroughput: 50 * 1024, uploadThroughput: 50 * 1024 });
-    await slow.call("Page.navigate", { url: `${url}${at}/` });
-    await slow.until("+document.getElementById('first')?.dataset.rows > 0");
+    await slow.call("Page.navigate", { url: `${url}${at}/` }); await slow.until("+document.getElementById('first')?.dataset.rows > 0");
     const came = await slow.evaluate("document.documentElement.outerHTML.length"); // not packed: more than what came
     assert.ok(came <= 120 * 1024, `${came} bytes came before it`);
     assert.match(await slow.evaluate("document.querySelector('#first p').textContent"), /^Loading study a: \d+ designs so far/);
@@ -263,15 +250,13 @@ const tried = {
     await open("a"); await until("document.getElementById('all-runs')");
     await page.evaluate("[window.prompt, window.confirm] = [() => 'renamed', () => window.sure]");
     await on("spare", "tr.querySelectorAll('button')[1].click()"); // not confirmed
-    await on("spare", "tr.querySelectorAll('button')[0].click()");
-    await until("/renamed/.test(document.getElementById('all-runs').textContent)");
+    await on("spare", "tr.querySelectorAll('button')[0].click()"); await until("/renamed/.test(document.getElementById('all-runs').textContent)");
     assert.deepEqual([has("spare"), has("renamed")], [false, true]);
     await on("renamed", "((e) => { e.value = 'a try'; e.dispatchEvent(new Event('change')); })(tr.querySelector('[type=text]'))");
     for (let k = 0; k < 100 && (await runs()).find((r) => r.name === "renamed").note !== "a try"; k++) await pause(50);
     assert.equal((await runs()).find((r) => r.name === "renamed").note, "a try");
     await page.evaluate("window.sure = true"); await on("renamed", "tr.querySelectorAll('button')[1].click()");
-    await until("!/renamed/.test(document.getElementById('all-runs').textContent)");
-    assert.ok(!existsSync(join(root, "renamed")));
+    await until("!/renamed/.test(document.getElementById('all-runs').textContent)"); assert.ok(!existsSync(join(root, "renamed")));
   },
   async "everything live is reached by the Tab key"() {
     const found = new Set(await page.focusedByTab(250));
@@ -361,8 +346,7 @@ const tried = {
       for (let k = +(await click("#save-page"), 0); k < 250 && !existsSync(saved); k++) await pause(20);
       return readFileSync(saved, "utf8");
     };
-    await page.call("Page.navigate", { url: html([]) });
-    await until("document.getElementById('what-if')?.dataset.turn");
+    await page.call("Page.navigate", { url: html([]) }); await until("document.getElementById('what-if')?.dataset.turn");
     page.events.length = 0;
     assert.match(await page.evaluate("document.getElementById('place').textContent"), /ominated/);
     await click("#keep-trial");
@@ -376,8 +360,7 @@ const tried = {
     await page.evaluate("document.getElementById('energies-and-displacement-over-time').open = true");
     await until("document.querySelectorAll('#what-if details svg').length >= 6");
     assert.deepEqual(page.complaints((asked) => /^file:/.test(asked) || asked.startsWith(origin)), []);
-    await page.call("Page.navigate", { url: html(["--no-engine"]) });
-    await until("document.documentElement?.dataset.ready === 'yes'");
+    await page.call("Page.navigate", { url: html(["--no-engine"]) }); await until("document.documentElement?.dataset.ready === 'yes'");
     assert.equal(await page.evaluate("document.querySelectorAll('#what-if, #engine, #scene').length"), 0);
   },
 };

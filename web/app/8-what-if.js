@@ -144,14 +144,15 @@ function whatIfPart() {
     overlaysChanged();
   }
 
+  // Drawn anew when what it is compared with has come.
+  const drawAnswer = () => drawPeaks(draw([paleFront(), ...beside().map((o) => ({ rows: [o.raw], colour: o.colour, thick: 1.2 })), { rows: [start.raw], colour: INK, thick: 2 }, ...(answer.objectives ? [{ rows: [answer.objectives], colour: TRIAL, thick: 3 }] : [])]));
+  views.layout.push(() => answer && drawAnswer());
+
   // The pictures of the whole front follow when the sliders rest.
   function showAnswer() {
     start.peaks ??= answer;
-    said.textContent = place();
-    part.dataset.turn = answer.turn;
-    draw([paleFront(), ...beside().map((o) => ({ rows: [o.raw], colour: o.colour, thick: 1.2 })), { rows: [start.raw], colour: INK, thick: 2 }, ...(answer.objectives ? [{ rows: [answer.objectives], colour: TRIAL, thick: 3 }] : [])]);
-    drawTable();
-    drawPeaks();
+    [said.textContent, part.dataset.turn] = [place(), answer.turn];
+    drawAnswer(drawTable());
     Object.assign(trial, overlayOf({ name: "what if", x, raw: answer.objectives ?? [] }, "\u25c6"), { isShown: trial.isShown });
     clearTimeout(resting_);
     resting_ = setTimeout(() => drawHistories(layoutChanged()), 400);
@@ -192,7 +193,6 @@ function whatIfPart() {
     }
     showKept();
   }
-
   const csv = () => [run.schema.variables.map(cell).join(","), ...kept.map((one) => one.x.join(","))].join("\n") + "\n";
   const save = plainButton("Download as a design file", () => saveFile(`${run.name}-kept.csv`, csv()), { id: "save-kept", disabled: true });
   const saveAll = plainButton("Save this page with them", savePage, { id: "save-page", disabled: true, hidden: Boolean(storeKept) });
