@@ -27,27 +27,6 @@ static void layout(void *levels, Carve *c)
     CARVE(c, q->d, q->n_out);
 }
 
-/* Output k. Where squares overflow, or the cheap level is constant beside the whole evaluation: the latter's mean. */
-static Line fit_line(const Levels *q, size_t k, const double cheap[], const double whole[])
-{
-    const double n = (double)q->n;
-    Line line = {0.0, 0.0, 1.0};
-    double xx = 0.0, xy = 0.0;
-    for (size_t i = k; i < q->n * q->n_out; i += q->n_out) {
-        line.from += cheap[i] / n;
-        line.to += whole[i] / n;
-    }
-    for (size_t i = k; i < q->n * q->n_out; i += q->n_out) {
-        const double x = cheap[i] - line.from;
-        xx += x * x;
-        xy += x * (whole[i] - line.to);
-    }
-    line.slope = xx > 0.0 ? xy / xx : 1.0;
-    if (!isfinite(line.slope))
-        line.slope = 0.0;
-    return line;
-}
-
 static double on_line(const Line *line, double cheap)
 {
     return line->to + line->slope * (cheap - line->from);
@@ -62,10 +41,26 @@ Status levels_fit(Levels **out, const Problem *p, int is_biased, size_t n, size_
     q->store = carve_all(layout, q);
     Status status = q->store ? STATUS_OK : fail_memory(err, n, "pairs of levels");
     int has_rest = status == STATUS_OK && is_biased && q->n_dim <= RBF_DIM_MAX;
-    for (size_t k = 0; status == STATUS_OK && k < n_out; k++)
-        q->line[k] = fit_line(q, k, cheap, whole);
 
-    /* What the lines leave. */
+    /* 1. The lines. Where squares overflow, or the cheap level is constant beside the whole evaluation: the mean. */
+    for (size_t k = 0; status == STATUS_OK && k < n_out; k++) {
+        Line *line = &q->line[k];
+        double xx = 0.0, xy = 0.0;
+        for (size_t i = k; i < n * n_out; i += n_out) {
+            line->from += cheap[i] / (double)n;
+            line->to += whole[i] / (double)n;
+        }
+        for (size_t i = k; i < n * n_out; i += n_out) {
+            const double off = cheap[i] - line->from;
+            xx += off * off;
+            xy += off * (whole[i] - line->to);
+        }
+        line->slope = xx > 0.0 ? xy / xx : 1.0;
+        if (!isfinite(line->slope))
+            line->slope = 0.0;
+    }
+
+    /* 2. What they leave. */
     for (size_t i = 0; has_rest && i < n * n_out; i++) {
         q->D[i] = whole[i] - on_line(&q->line[i % n_out], cheap[i]);
         has_rest = isfinite(q->D[i]);

@@ -242,41 +242,34 @@ static void split(NdTree *t, Node *q)
     }
 }
 
-/* Point f goes to the leaf whose bounds have the nearest middle; 0: there is no memory. */
-static int insert(NdTree *t, const double f[], size_t row)
-{
-    const size_t m = t->n_obj;
-    t->root = t->root ? t->root : make_leaf(t, f);
-    Node *q = t->root;
-    if (!q)
-        return 0;
-    extend(m, q, f);
-    for (size_t k = 0; k < m; k++) {
-        const double width = q->bounds[m + k] - q->bounds[k];
-        t->weight[k] = width > 0.0 ? 1.0 / width : 0.0;
-    }
-    while (q->n_child > 0) {
-        q = nearest_child(t, q, f);
-        extend(m, q, f);
-    }
-    if (!leaf_add(q, row))
-        return 0;
-    if (q->n > LEAF_MAX)
-        split(t, q);
-    return 1;
-}
-
 Status nd_tree_insert(NdTree *t, const double F[], size_t row, NdChange *change, Err *err)
 {
-    const double *f = F + row * t->n_obj;
+    const size_t m = t->n_obj;
+    const double *f = F + row * m;
     t->F = F;
     t->n_removed = 0;
     *change = (NdChange){.is_in = !t->root || !is_dominated(t, t->root, f)};
     if (change->is_in && t->root)
         t->root = remove_dominated(t, t->root, f);
-    if (change->is_in && (t->lacks_memory || !insert(t, f, row)))
-        return fail(err, STATUS_NO_MEMORY, "no memory for the front");
     change->n_removed = t->n_removed;
     change->removed = t->removed;
+    if (!change->is_in)
+        return STATUS_OK;
+
+    /* It goes to the leaf whose bounds have the nearest middle, in widths of all points. */
+    Node *q = t->root = t->root ? t->root : make_leaf(t, f);
+    for (size_t k = 0; q && k < m; k++) {
+        const double width = MAX_OF(q->bounds[m + k], f[k]) - MIN_OF(q->bounds[k], f[k]);
+        t->weight[k] = width > 0.0 ? 1.0 / width : 0.0;
+    }
+    while (q && q->n_child > 0) {
+        extend(m, q, f);
+        q = nearest_child(t, q, f);
+    }
+    if (!q || t->lacks_memory || !leaf_add(q, row))
+        return fail(err, STATUS_NO_MEMORY, "no memory for the front");
+    extend(m, q, f);
+    if (q->n > LEAF_MAX)
+        split(t, q);
     return STATUS_OK;
 }
