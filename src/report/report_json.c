@@ -106,8 +106,7 @@ static json_t *json_of_baselines(const Detail *d, const MeasureOrder *order)
         }
         case_device_text(k, &d->baseline[k].device, device);
         const int ok = d->baseline[k].outcome == OUTCOME_OK;
-        json_array_append_new(list, json_of("key=%s words=%s device=%s better=%p objectives=%p", SCENES[k].key,
-                                            SCENES[k].words, device, better,
+        json_array_append_new(list, json_of("key=%s device=%s better=%p objectives=%p", SCENES[k].key, device, better,
                                             ok ? json_numbers(order->n_obj, values) : json_null()));
     }
     return list;

@@ -44,9 +44,8 @@ static Status name_record(const char *source, void *user, Err *err)
 void *gzip_bytes(const void *bytes, size_t n, size_t *n_packed)
 {
     z_stream z = {.next_in = (unsigned char *)(uintptr_t)bytes, .avail_in = (unsigned)n};
-    enum { GZIP = 16 };
-    if (n > INT_MAX || deflateInit2(&z, Z_DEFAULT_COMPRESSION, Z_DEFLATED, GZIP + MAX_WBITS, MAX_MEM_LEVEL,
-                                    Z_DEFAULT_STRATEGY) != Z_OK)
+    if (n > INT_MAX ||
+        deflateInit2(&z, Z_DEFAULT_COMPRESSION, Z_DEFLATED, MAX_WBITS + 16, MAX_MEM_LEVEL, Z_DEFAULT_STRATEGY) != Z_OK)
         return NULL;
     z.avail_out = (unsigned)deflateBound(&z, n);
     void *packed = z.next_out = calloc(1, z.avail_out + 3);

@@ -12,8 +12,7 @@
 #include "study/improver.h"
 
 struct OnDemand {
-    char *provenance; /* of the run, and when it began: neither changes */
-    char started[24];
+    char *provenance; /* of the run, with when it began: it does not change */
     const RecordPaths *moved;
     atomic_int n_users;
     pthread_mutex_t designs; /* of the rest */
@@ -35,7 +34,6 @@ Status on_demand_open(OnDemand **out, const Run *run, const RecordPaths *moved, 
     }
     pthread_mutex_init(&o->designs, NULL);
     o->n_users = 1;
-    snprintf(o->started, sizeof o->started, "%s", run->n_sessions > 0 ? run->session[0].started : "");
     o->moved = moved;
     *out = o;
     return STATUS_OK;
@@ -60,8 +58,7 @@ void on_demand_close(OnDemand *o)
 
 int on_demand_is_of(const OnDemand *o, const Run *run)
 {
-    return strcmp(o->started, run->n_sessions > 0 ? run->session[0].started : "") == 0 &&
-           strcmp(o->provenance, run->provenance) == 0;
+    return strcmp(o->provenance, run->provenance) == 0;
 }
 
 /* -- a design of the run ------------------------------------------------------------------------------------------- */

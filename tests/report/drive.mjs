@@ -158,10 +158,8 @@ const tried = {
     await press("p"); // by percentiles: ticks are values of designs, as many between any two
     assert.match(decodeURIComponent(await page.evaluate("location.hash")), new RegExp(`percent=${names[0]}`));
     assert.ok((await ticks()).length > 2);
-    await press("p"); await press("Enter");
-    assert.equal(await page.evaluate("document.querySelectorAll('#axis-menu:not([hidden]) [role=menuitem]').length"), 7);
-    await press("Escape");
-    assert.equal(await page.evaluate("document.getElementById('axis-menu').hidden && document.activeElement.dataset.name"), names[0]);
+    await press("p"); await press("Enter"); assert.equal(await page.evaluate("document.querySelectorAll('#axis-menu:not([hidden]) [role=menuitem]').length"), 7);
+    await press("Escape"); assert.equal(await page.evaluate("document.getElementById('axis-menu').hidden && document.activeElement.dataset.name"), names[0]);
     await press("Delete"); assert.deepEqual(await shownAxes(), names.slice(1)); await click("input[name=axes][value=objectives]");
   },
   async "the pointer on a line, a dot or a row shows its design in all three, a click marks it"() {
@@ -193,8 +191,7 @@ const tried = {
     assert.match(await page.evaluate("document.getElementById('count').textContent"), new RegExp(`${inside.toLocaleString("en-US")} of ${inside.toLocaleString("en-US")} .*${(rows.length - inside).toLocaleString("en-US")} put aside`));
     await click("#restore"); assert.equal(await counted(), rows.length); await drag(await boxOf("g.axis .brush .overlay", 0), [0.5, 0.45], [0.5, 1]);
     const again = await counted();
-    await click("#exclude"); assert.equal(await counted(), rows.length - again);
-    assert.equal((await downloaded()).trim().split("\n").length - 1, rows.length - again);
+    await click("#exclude"); assert.equal(await counted(), rows.length - again); assert.equal((await downloaded()).trim().split("\n").length - 1, rows.length - again);
     await click("#restore"); assert.equal(await counted(), rows.length);
   },
   async "the address carries axes, ranges, steps and colours to another window"() {
@@ -289,8 +286,7 @@ const tried = {
       if (!(await page.evaluate(`Boolean(document.querySelector("#${table} td button"))`))) continue;
       const wanted = `${table},${await page.evaluate(`document.querySelector("#${table} td button").textContent`)}`;
       await page.evaluate(`document.querySelector("#${table} td button").focus({ preventScroll: true })`);
-      await page.evaluate("document.querySelector('input[name=axes][value=all]').click()"); await settle();
-      assert.equal(await page.evaluate(focused), wanted);
+      await page.evaluate("document.querySelector('input[name=axes][value=all]').click()"); await settle(); assert.equal(await page.evaluate(focused), wanted);
       await page.evaluate("document.activeElement.dispatchEvent(new KeyboardEvent('keydown', { key: 'z', ctrlKey: true, bubbles: true }))");
       await settle(); assert.equal(await page.evaluate(focused), wanted);
       await page.evaluate("document.activeElement.click()"); await settle(); await press("Escape");

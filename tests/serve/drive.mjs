@@ -81,13 +81,11 @@ async function takePictures() {
   await picture(page, join(pictures, "serve-what-if.jpg"), "#what-if"); await click("#kept li button"); await click("#designs tbody td button", 1);
   await until("document.getElementById('drawer').dataset.id && !document.querySelector('#drawer .bar + .bar button:nth-child(2)').disabled && document.querySelectorAll('#drawer svg').length >= 4");
   await picture(page, join(pictures, "serve-design.jpg")); await click("#drawer .bar + .bar button", 1);
-  await until("document.querySelectorAll('#compared tbody tr').length === 2");
-  await picture(page, join(pictures, "serve-compare.jpg"), "#compare", 900);
+  await until("document.querySelectorAll('#compared tbody tr').length === 2"); await picture(page, join(pictures, "serve-compare.jpg"), "#compare", 900);
   const live = start("optimize", "configs/quick.ini", "--threads", "1", "--out", join(root, "quick"));
   live.stdout.resume();
   while (!(await runs()).some((r) => r.name === "quick")) await pause(50);
-  await open("quick"); await until("+document.getElementById('live').dataset.generation > 5", 60);
-  await picture(page, join(pictures, "serve-live.jpg"), "#live");
+  await open("quick"); await until("+document.getElementById('live').dataset.generation > 5", 60); await picture(page, join(pictures, "serve-live.jpg"), "#live");
 }
 
 // ---- what is tried
@@ -247,8 +245,7 @@ const tried = {
     await until("document.querySelectorAll('#runs figure svg').length >= 1 && document.querySelector('#runs .strip canvas')");
     const on = (name, act) => page.evaluate(`((tr) => ${act})(Array.from(document.querySelectorAll("#all-runs tr")).find((tr) => tr.cells[1].textContent === "${name}"))`), has = (name) => existsSync(join(root, name, "run.sqlite"));
     cpSync(join(root, "c"), join(root, "spare"), { recursive: true });
-    await open("a"); await until("document.getElementById('all-runs')");
-    await page.evaluate("[window.prompt, window.confirm] = [() => 'renamed', () => window.sure]");
+    await open("a"); await until("document.getElementById('all-runs')"); await page.evaluate("[window.prompt, window.confirm] = [() => 'renamed', () => window.sure]");
     await on("spare", "tr.querySelectorAll('button')[1].click()"); // not confirmed
     await on("spare", "tr.querySelectorAll('button')[0].click()"); await until("/renamed/.test(document.getElementById('all-runs').textContent)");
     assert.deepEqual([has("spare"), has("renamed")], [false, true]);
@@ -312,8 +309,7 @@ const tried = {
   async "a run that judges designs by several simulations has its page, and what-if asks for all of them"() {
     await open("d"); await until("document.querySelector('[name=whole]')");
     const said = "document.getElementById('place').textContent";
-    await until(`/^Not comparable/.test(${said})`);
-    await page.evaluate("document.querySelector('[name=whole]').click()"); await until(`/ominated/.test(${said})`);
+    await until(`/^Not comparable/.test(${said})`); await page.evaluate("document.querySelector('[name=whole]').click()"); await until(`/ominated/.test(${said})`);
   },
   async "a run of another problem has its front, its progress and no sliders"() {
     if (!(await runs()).some((r) => r.name === "c")) return;
