@@ -61,7 +61,7 @@ static int is_version(const char *word)
 
 static int is_help(const char *word)
 {
-    return strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0 || strcmp(word, "help") == 0;
+    return asks_for_help(word) || strcmp(word, "help") == 0;
 }
 
 /* help and --man: a second word may name a command; more are too many. */

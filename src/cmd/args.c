@@ -3,6 +3,7 @@
 #include <limits.h>
 
 #include "base/linalg.h"
+#include "cmd/document.h"
 #include "cmd/outputs.h"
 #include "store/folder.h"
 #include "settings/settings.h"
@@ -25,15 +26,19 @@ static const char *program_of(const Command *c)
 
 void command_help(const Command *c, FILE *out)
 {
-    fprintf(out, "example: %s\n\n%s\n\n", c->example, c->details);
-    fprintf(out, "usage: %s %s%s%s%s\n\n", program_of(c), c->name, c->operand ? " " : "", c->operand ? c->operand : "",
-            c->options->name ? " [options]" : "");
+    const int width = terminal_width(fileno(out));
+    fprintf(out, "example: %s\n\n", c->example);
+    print_words(out, c->details, 0, MIN_OF(width, 100));
+    fprintf(out, "\nusage: %s %s%s%s [options]\n\n", program_of(c), c->name, c->operand ? " " : "",
+            c->operand ? c->operand : "");
     for (const ArgOption *o = c->options; o->name; o++) {
-        char left[48];
+        char left[48], line[400];
         snprintf(left, sizeof left, "%s%s%s", o->name, o->value ? " " : "", o->value ? o->value : "");
-        fprintf(out, "  %-25s %s%s%s\n", left, o->help, o->setting ? "  = --set " : "", o->setting ? o->setting : "");
+        snprintf(line, sizeof line, "  %-25s %s%s%s", left, o->help, o->setting ? "  = --set " : "",
+                 o->setting ? o->setting : "");
+        print_words(out, line, 28, width);
     }
-    fprintf(out, "  %-25s this text\n", "--help");
+    fputs("  --help                    this text\n", out);
 }
 
 /* What stands behind KEY= of an assignment; NULL: it is another one, or nothing does. */
@@ -127,7 +132,7 @@ static Status take_operand(Args *args, const char *word, Err *err)
     return STATUS_OK;
 }
 
-static int asks_for_help(const char *word)
+int asks_for_help(const char *word)
 {
     return strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0;
 }

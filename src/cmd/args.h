@@ -12,6 +12,8 @@
 /* An example, the details and every option. */
 void command_help(const Command *command, FILE *out);
 
+int asks_for_help(const char *word); /* --help or -h */
+
 /* argv: what follows the command's name. */
 Status args_parse(Args *args, const Command *command, int argc, char *const argv[], Err *err);
 const char *args_value(const Args *args, const char *name); /* NULL when it was not given */

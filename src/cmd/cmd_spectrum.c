@@ -282,7 +282,7 @@ static const ArgOption OPTIONS[] = {
     OPTION_JSON,
     OPTION_CSV,
     VALUE("--history", "FILE",
-          "acceleration, velocity, displacement and Husid's curve as CSV (NAME.json: a SimCenter event); -: standard "
+          "acceleration, velocity, displacement, Husid's curve as CSV (NAME.json: SimCenter event); -: standard "
           "output"),
     VALUE("--svg", "FILE", "a picture of spectrum and histories, drawn by Chromium"),
     OPTION_END,

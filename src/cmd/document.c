@@ -224,19 +224,17 @@ int terminal_width(int fd)
     return n > 0 ? n : ioctl(fd, TIOCGWINSZ, &w) == 0 && w.ws_col > 0 ? w.ws_col : INT_MAX;
 }
 
-/* Broken at blanks where it reaches the width; further lines begin as far in as the first. */
-static void print_words(FILE *out, const char *words, int width)
+void print_words(FILE *out, const char *words, int indent, int width)
 {
-    const int indent = (int)strspn(words, " ");
     int used = 0;
     while (*words) {
-        const size_t blanks = strspn(words, " "), n = blanks + strcspn(words + blanks, " ");
-        const int wide = width_of(words, n), breaks = used > indent && used + wide > width;
-        if (breaks)
-            fprintf(out, "\n%*s", indent, "");
-        fwrite(words + breaks * blanks, 1, n - breaks * blanks, out);
-        used = breaks ? indent + wide - (int)blanks : used + wide;
-        words += n;
+        const size_t blanks = strspn(words, " \n"), n = strcspn(words + blanks, " \n");
+        const int wide = width_of(words + blanks, n), ends = strncmp(words, "\n\n", 2) == 0;
+        const int breaks = ends || (used > indent && used + (int)blanks + wide > width);
+        const int before = breaks ? indent : (int)blanks;
+        fprintf(out, "%s%*s%.*s", ends ? "\n\n" : breaks ? "\n" : "", before, "", (int)n, words + blanks);
+        used = (breaks ? 0 : used) + before + wide;
+        words += blanks + n;
     }
     fputc('\n', out);
 }
@@ -346,7 +344,7 @@ static void print_parts(Document *d, FILE *out, int is_html)
         else if (is_html)
             print_element(out, is_figure ? "figcaption" : strcmp(kind, "note") ? kind : "p class=\"note\"", words);
         else
-            print_words(out, words, width);
+            print_words(out, words, (int)strspn(words, " "), width);
         fputs(is_figure ? "</figure>\n" : "", out);
         before = kind;
     }

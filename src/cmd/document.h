@@ -41,6 +41,10 @@ void document_free(Document *d);
 
 int terminal_width(int fd); /* COLUMNS where it is set; INT_MAX: no terminal */
 
+/* Words, broken at blanks where they reach the width; further lines begin at `indent`. A line's end is a blank, an empty
+ * line stays. */
+void print_words(FILE *out, const char *words, int indent, int width);
+
 /* ---- rows -------------------------------------------------------------------------------------------------------- */
 
 json_t *json_only(json_t *list);                           /* a list of one is its item */

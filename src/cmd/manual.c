@@ -60,11 +60,6 @@ Status command_find(const char *word, const Command **found, const char **option
                           : args_unknown("command", word, names, N_COMMANDS, "`imtet --help`", err);
 }
 
-static const char *operand_of(const Command *c)
-{
-    return c->operand ? c->operand : "";
-}
-
 /* ---- on the terminal ------------------------------------------------------------------------------------------- */
 
 void usage_write(FILE *out)
@@ -77,7 +72,7 @@ void usage_write(FILE *out)
         fprintf(out, "%s%s\n", group > 1 ? "\n" : "", GROUPS[group]);
         for (int i = 0; i < N_COMMANDS; i++)
             if ((int)COMMANDS[i]->group == group)
-                fprintf(out, "  %-9s %-10s %s\n", COMMANDS[i]->name, operand_of(COMMANDS[i]), COMMANDS[i]->summary);
+                fprintf(out, "  %-9s %-10s %s\n", COMMANDS[i]->name, COMMANDS[i]->operand, COMMANDS[i]->summary);
     }
     fprintf(out,
             "\n`imtet help COMMAND` shows an example and every option, `imtet --version --json` what this program\n"
@@ -110,25 +105,20 @@ static void roff(FILE *out, const char *format, ...)
 void manual_write(const Command *c, FILE *out)
 {
     static const char ENTRY[] = ".TP\n\\fB%\\fR \\fI%\\fR\n%\n";
-    char code[16];
     const char *dash = c ? "-" : "", *name = c ? c->name : "";
     roff(out, ".TH imtet%% 1 \"" IMTET_DATE "\" \"imtet %\" \"User commands\"\n", dash, name, program_version());
     roff(out, ".SH NAME\nimtet%% \\- %\n.SH SYNOPSIS\n\\fBimtet %\\fR % [options]\n.SH DESCRIPTION\n%\n.SH %\n", dash,
          name, c ? c->summary : "earthquake protection by impacts between a tower and an inner core", name,
-         c ? operand_of(c) : "COMMAND",
-         c ? c->details
-           : "Simulates a tower that collides with its core and searches "
-             "for the best designs. Each command has its own page.",
+         c ? c->operand : "COMMAND",
+         c ? c->details : "Simulates and optimizes a tower that collides with its core. Each command has its own page.",
          c ? "OPTIONS" : "COMMANDS");
     for (const ArgOption *o = c ? c->options : &(ArgOption){0}; o->name; o++)
         roff(out, ENTRY, o->name, o->value ? o->value : "", o->help);
     for (int i = 0; !c && i < N_COMMANDS; i++)
-        roff(out, ENTRY, COMMANDS[i]->name, operand_of(COMMANDS[i]), COMMANDS[i]->summary);
+        roff(out, ENTRY, COMMANDS[i]->name, COMMANDS[i]->operand, COMMANDS[i]->summary);
     fputs(".SH EXIT STATUS\n", out);
-    for (int s = 0; s < STATUS_COUNT; s++) {
-        snprintf(code, sizeof code, "%d", status_exit_code(s));
-        roff(out, ENTRY, code, "", status_words(s));
-    }
+    for (int s = 0; s < STATUS_COUNT; s++)
+        fprintf(out, ".TP\n\\fB%d\\fR\n%s\n", status_exit_code(s), status_words(s));
     fputs(".SH EXAMPLES\n.nf\n", out);
     for (int i = 0; i < (c ? 1 : FIRST_EXAMPLES); i++)
         roff(out, "%\n", c ? c->example : COMMANDS[i]->example);

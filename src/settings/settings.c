@@ -108,8 +108,7 @@ static const Option OPTIONS[] = {
          "another building in place of the core, a neighbour that pounds: values of building.model, with no more "
          "floors (docs/building.md); none: the cantilever of the settings below"),
     CHOICE(core.section, CoreSection, CORE_SECTION_LIST, "box",
-           "box: square tube of outer side width_m; plate: solid, width_m wide; effective: area and second moment of "
-           "area given",
+           "box: square tube of outer side width_m; plate: solid, width_m wide; effective: areas and inertias given",
            .flags = SETTING_BASIC),
     CHOICE(core.theory, CoreTheory, CORE_THEORY_LIST, "timoshenko",
            "timoshenko: with shear deformation and rotary inertia; euler_bernoulli: bending alone, as in the paper"),
