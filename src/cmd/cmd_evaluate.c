@@ -440,8 +440,7 @@ static const ArgOption OPTIONS[] = {
     OPTION_CHANNEL,
     VALUE("--pga", "G", "scale every record to this peak [g]; FROM:STEP:TO: incremental dynamic analysis"),
     VALUE("--sa", "G",
-          "scale to this spectral acceleration (5 %) at the building's first period or motion.sa_period_s [g]; "
-          "FROM:STEP:TO as above"),
+          "scale to this Sa (5 %) at the building's first period or motion.sa_period_s [g]; FROM:STEP:TO as above"),
     VALUE("--fragility", "LIST",
           "with FROM:STEP:TO: probability of exceeding drift_ratio=0.02,j3_g=5 by intensity; limits: those of the run"),
     VALUE("--counts", "FILE", "fragility by a CSV of intensity (such as sa_g), exceeded and of, without a design"),

@@ -121,8 +121,7 @@ static const ArgOption OPTIONS[] = {
     VALUE("--max-evals", "N", "largest number of simulations; default: 300"),
     VALUE("--replicates", "N", "simulations of a noisy design, such as a tower's, that are averaged; default: 4"),
     VALUE("--csv", "FILE",
-          "the polished design, its objectives before and after, with standard deviations and errors, into FILE; -: "
-          "standard output"),
+          "the polished design, its objectives before and after, their errors, into FILE; -: standard output"),
     OPTION_JSON,
     OPTION_MOVED,
     OPTION_END,

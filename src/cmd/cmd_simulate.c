@@ -308,8 +308,7 @@ static const ArgOption OPTIONS[] = {
     SWITCH("--sensitivity",
            "how each result changes with gaps, thickness, contact and damping; --replicates reduces its error"),
     SWITCH("--horizon",
-           "predictability horizon: the time until two nearly equal runs diverge; standard deviation of every result "
-           "with gaps 1 um off"),
+           "time until two nearly equal runs diverge; standard deviation of every result with gaps 1 um off"),
     OPTIONS_MOTION,
     OPTION_JSON,
     OPTION_CSV,

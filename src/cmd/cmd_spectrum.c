@@ -282,8 +282,7 @@ static const ArgOption OPTIONS[] = {
     OPTION_JSON,
     OPTION_CSV,
     VALUE("--history", "FILE",
-          "acceleration, velocity, displacement, Husid's curve as CSV (NAME.json: SimCenter event); -: standard "
-          "output"),
+          "acceleration, velocity, displacement, Husid's curve as CSV (NAME.json: SimCenter); -: standard output"),
     VALUE("--svg", "FILE", "a picture of spectrum and histories, drawn by Chromium"),
     OPTION_END,
 };

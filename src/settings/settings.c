@@ -72,8 +72,7 @@ static const Option OPTIONS[] = {
          "(docs/building.md)",
          .flags = SETTING_BASIC | SETTING_FREE),
     CHOICE(building.units, BuildingUnits, BUILDING_UNITS_LIST, "auto",
-           "units of K.csv and M.csv, or of an OpenSees model; auto: N/m and kg, refused if the period or the floors "
-           "are implausible",
+           "units of K.csv and M.csv, or of an OpenSees model; auto: N/m and kg, if these are plausible",
            .flags = SETTING_BASIC),
     CHOICE(building.damping_model, DampingModel, DAMPING_MODEL_LIST, "modal",
            "modal: building.damping mode by mode; rayleigh: its first ratio in two modes"),
@@ -183,8 +182,7 @@ static const Option OPTIONS[] = {
          "counts per m/s2 of the instrument"),
     TEXT(motion.channel, "auto", "component by name or number (from 1) of a file with several; auto: the only one"),
     REAL(motion.dt_s, "s", "0", 0, 100,
-         "time step of a file that has neither step nor times; unequal steps are resampled to it by straight lines; "
-         "0: as in the file"),
+         "time step of a file without step and times; unequal steps are resampled to it linearly; 0: as in the file"),
 
     TEXT(motion.text, "auto",
          "how to read a plain text that is not understood: skip=LINES, columns=time:1,value:3, per_line=8 (one motion "
