@@ -118,7 +118,7 @@ void manual_write(const Command *c, FILE *out)
         roff(out, ENTRY, COMMANDS[i]->name, COMMANDS[i]->operand, COMMANDS[i]->summary);
     fputs(".SH EXIT STATUS\n", out);
     for (int s = 0; s < STATUS_COUNT; s++)
-        fprintf(out, ".TP\n\\fB%d\\fR\n%s\n", status_exit_code(s), status_words(s));
+        fprintf(out, ".TP\n\\fB%d\\fR \n%s\n", status_exit_code(s), status_words(s));
     fputs(".SH EXAMPLES\n.nf\n", out);
     for (int i = 0; i < (c ? 1 : FIRST_EXAMPLES); i++)
         roff(out, "%\n", c ? c->example : COMMANDS[i]->example);
