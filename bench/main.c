@@ -15,6 +15,7 @@
 #include "bench/paper.h"
 #include "bench/problem.h"
 #include "cmd/args.h"
+#include "cmd/document.h"
 #include "motion/motion_scale.h"
 #include "store/output.h"
 

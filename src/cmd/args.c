@@ -3,7 +3,6 @@
 #include <limits.h>
 
 #include "base/linalg.h"
-#include "cmd/document.h"
 #include "cmd/outputs.h"
 #include "store/folder.h"
 #include "settings/settings.h"
@@ -17,28 +16,6 @@ Status args_unknown(const char *what, const char *word, const char *const known[
     const char *near = nearest_word(word, known, n);
     return near ? misused(err, "unknown %s '%.60s'; did you mean %s?", what, word, near)
                 : misused(err, "unknown %s '%.60s'; %s lists them", what, word, where);
-}
-
-static const char *program_of(const Command *c)
-{
-    return c->program ? c->program : "imtet";
-}
-
-void command_help(const Command *c, FILE *out)
-{
-    const int width = terminal_width(fileno(out));
-    fprintf(out, "example: %s\n\n", c->example);
-    print_words(out, c->details, 0, MIN_OF(width, 100));
-    fprintf(out, "\nusage: %s %s%s%s [options]\n\n", program_of(c), c->name, c->operand ? " " : "",
-            c->operand ? c->operand : "");
-    for (const ArgOption *o = c->options; o->name; o++) {
-        char left[48], line[400];
-        snprintf(left, sizeof left, "%s%s%s", o->name, o->value ? " " : "", o->value ? o->value : "");
-        snprintf(line, sizeof line, "  %-25s %s%s%s", left, o->help, o->setting ? "  = --set " : "",
-                 o->setting ? o->setting : "");
-        print_words(out, line, 28, width);
-    }
-    fputs("  --help                    this text\n", out);
 }
 
 /* What stands behind KEY= of an assignment; NULL: it is another one, or nothing does. */

@@ -9,9 +9,6 @@
 #include "cmd/command.h"
 #include "study/record_paths.h"
 
-/* An example, the details and every option. */
-void command_help(const Command *command, FILE *out);
-
 int asks_for_help(const char *word); /* --help or -h */
 
 /* argv: what follows the command's name. */

@@ -37,6 +37,11 @@ typedef struct {
     const char *value; /* NULL for a switch */
 } Given;
 
+static inline const char *program_of(const Command *c)
+{
+    return c->program ? c->program : "imtet";
+}
+
 struct Args {
     const Command *command;
     const char *operand;   /* the first */

@@ -224,7 +224,9 @@ int terminal_width(int fd)
     return n > 0 ? n : ioctl(fd, TIOCGWINSZ, &w) == 0 && w.ws_col > 0 ? w.ws_col : INT_MAX;
 }
 
-void print_words(FILE *out, const char *words, int indent, int width)
+/* Words, broken at blanks where they reach the width; further lines begin at `indent`. A line's end is a blank, and an
+ * empty line stays. */
+static void print_words(FILE *out, const char *words, int indent, int width)
 {
     int used = 0;
     while (*words) {
@@ -237,6 +239,23 @@ void print_words(FILE *out, const char *words, int indent, int width)
         words += blanks + n;
     }
     fputc('\n', out);
+}
+
+void command_help(const Command *c, FILE *out)
+{
+    const int width = terminal_width(fileno(out));
+    fprintf(out, "example: %s\n\n", c->example);
+    print_words(out, c->details, 0, MIN_OF(width, 100));
+    fprintf(out, "\nusage: %s %s%s%s [options]\n\n", program_of(c), c->name, c->operand ? " " : "",
+            c->operand ? c->operand : "");
+    for (const ArgOption *o = c->options; o->name; o++) {
+        char left[48], line[400];
+        snprintf(left, sizeof left, "%s%s%s", o->name, o->value ? " " : "", o->value ? o->value : "");
+        snprintf(line, sizeof line, "  %-25s %s%s%s", left, o->help, o->setting ? "  = --set " : "",
+                 o->setting ? o->setting : "");
+        print_words(out, line, 28, width);
+    }
+    fputs("  --help                    this text\n", out);
 }
 
 static void print_element(FILE *out, const char *element, const char *words)

@@ -39,11 +39,10 @@ void document_print(Document *d, FILE *out);
 void document_html(Document *d, FILE *out);
 void document_free(Document *d);
 
-int terminal_width(int fd); /* COLUMNS where it is set; INT_MAX: no terminal */
+/* Help: an example, the details and every option, wrapped to the terminal. */
+void command_help(const Command *command, FILE *out);
 
-/* Words, broken at blanks where they reach the width; further lines begin at `indent`. A line's end is a blank, an empty
- * line stays. */
-void print_words(FILE *out, const char *words, int indent, int width);
+int terminal_width(int fd); /* COLUMNS where it is set; INT_MAX: no terminal */
 
 /* ---- rows -------------------------------------------------------------------------------------------------------- */
 
