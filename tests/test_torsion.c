@@ -195,9 +195,11 @@ TEST(contacts_at_the_centre_and_a_building_alone_do_not_turn)
 
 TEST(a_contact_beyond_the_edge_is_refused)
 {
-    expect(65, "contact.eccentricity: 0.7, 1.2; contacts are on a floor",
+    expect(65, "contact.eccentricity: 0.7 is more than 0.6, half of the side",
            "simulate configs/quick.ini --design none --set contact.eccentricity=0.7");
-    expect(65, "contact.eccentricity: 0.3, 0.5",
+    expect(65, "contact.eccentricity: 3 numbers; give",
+           "simulate configs/quick.ini --design none --set contact.eccentricity=0.05,1,1");
+    expect(65, "contact.eccentricity: 0.3 is more than 0.25",
            "simulate configs/quick.ini --design none --set contact.eccentricity=0.3,0.5");
 }
 

@@ -6,6 +6,7 @@ import functools
 import json
 import operator
 import os
+import shlex
 import sqlite3
 import struct
 from typing import Any
@@ -76,7 +77,7 @@ class Run(Copied, Tabular):
         self.path = os.fspath(path)
         name = os.path.join(path, "run.sqlite")
         if not os.path.exists(name):
-            raise FileNotFoundError(f"{path}: " + ("no run is there (run.sqlite)" if os.path.isdir(path) else "there is no such folder"))
+            raise FileNotFoundError(f"{path}: no run is there (run.sqlite)")
         db = sqlite3.connect(f"file:{os.path.abspath(name)}?mode=ro", uri=True)
         try:
             self._check(db)
@@ -126,21 +127,20 @@ class Run(Copied, Tabular):
         self.inputs = json.loads(head[1]).get("inputs", {})
         columns, rows = self._rows(db, "evaluation")
         columns_finer, finer = self._rows(db, "finer")
-        marks = set(row[0] for row in db.execute("SELECT evaluation FROM front WHERE left IS NULL"))
+        marks = {row[0] for row in db.execute("SELECT evaluation FROM front WHERE left IS NULL")}
         last = db.execute("SELECT members, simulated FROM generation ORDER BY number DESC LIMIT 1").fetchone()
         if last and functools.reduce(operator.xor, (_digest([i]) for i in marks), 0) != last[0] & _MASK:
             raise self._fail(7, "is damaged: its front is not what was written")
         if last and not rows.keys() >= set(range(1, last[1] + 1)):
             raise self._fail(7, "is damaged: an evaluation is missing")
-        if finer:
-            marks = {row[0] for row in db.execute("SELECT evaluation FROM front")}
+        marks = {row[0] for row in db.execute("SELECT evaluation FROM front")} if finer else marks
         self._marks, self._levels = marks, {i: row[columns_finer.index("level")] for i, row in finer.items()}
-
         names = columns[columns.index("digest") + 1:]
         self.variables: list[str] = names[:head[3]]
         self.objectives: list[str] = [n for n in names[head[3]:] if n + "_sd" in columns_finer]
+        self._signs = [self._sense(k, n) for k, n in enumerate(self.objectives)]
         better = {columns.index(n): k for k, n in enumerate(columns_finer)
-                  if n == "violation" or (n in names and n not in self.variables)}
+                  if n == "violation" or n in names and n not in self.variables}
         chosen = [columns.index(n) for n in ("id", "generation", "kind", "outcome", "violation", *names)]
         kept = sorted((row for row in rows.values() if row[2] is not None), key=lambda row: row[2] in _OUTSIDE)
 
@@ -148,10 +148,9 @@ class Run(Copied, Tabular):
             fine = finer.get(row[0])
             best = fine[better[k]] if fine and k in better and fine[better[k]] is not None else row[k]
             return np.nan if best is None else best
-        kinds: Any = [("id", np.int64), ("generation", np.int64), ("kind", "U12"), ("outcome", "U16"),
-                      ("violation", np.float64), *((n, np.float64) for n in names)]
-        table = np.array([tuple(value(row, k) for k in chosen) for row in kept], dtype=kinds)
-        self.designs: Records = table.view(np.recarray)
+        kinds: Any = [("id", "i8"), ("generation", "i8"), ("kind", "U12"), ("outcome", "U16"), ("violation", "f8"),
+                      *((n, "f8") for n in names)]
+        self.designs: Records = np.array([tuple(value(row, k) for k in chosen) for row in kept], kinds).view(np.recarray)
 
     def __repr__(self) -> str:
         return f"<imtet.Run {self.path}: {len(self.designs)} designs, objectives {', '.join(self.objectives)}>"
@@ -159,11 +158,11 @@ class Run(Copied, Tabular):
     def _sense(self, k: int, name: str) -> float:
         if self.settings["problem.kind"] == "tower":
             return -1.0 if name in _MORE_IS_BETTER else 1.0
-        words = [w.strip() for w in self.settings["problem.senses"].split(",")]
+        words = self.settings["problem.senses"].replace(" ", "").split(",")
         return -1.0 if words[k if len(words) > 1 else 0] == "max" else 1.0
 
     def _minimised(self, d: Any) -> Array:
-        return np.column_stack([self._sense(k, n) * d[n] for k, n in enumerate(self.objectives)])
+        return np.column_stack([d[n] for n in self.objectives]) * self._signs
 
     @property
     def front(self) -> Records:
@@ -194,8 +193,8 @@ class Run(Copied, Tabular):
         """The design of the front nearest to the ideal point, each objective scaled to 0..1 over the front."""
         front = self._front()
         F = self._minimised(front)
-        low, high = F.min(axis=0), F.max(axis=0)
-        return front[(((F - low) / np.where(high > low, high - low, 1)) ** 2).sum(axis=1).argmin()]
+        spread = np.ptp(F, axis=0)
+        return front[(((F - F.min(axis=0)) / np.where(spread > 0, spread, 1)) ** 2).sum(axis=1).argmin()]
 
     def _front(self) -> Records:
         front = self.front
@@ -213,10 +212,7 @@ class Run(Copied, Tabular):
         return rows[0]
 
     def simulate(self, number: int) -> Result:
-        """Simulate a design of a tower again, by its id, as the run simulates it.
-
-        A design that the run's end named is simulated with more steps, so that the numbers are those of `designs`.
-        """
+        """Simulate a design of a tower again, by its id, with as many steps as the run knows it by: that of `designs`."""
         if self.settings["problem.kind"] != "tower":
             raise ValueError("the problem of this run is not a tower: `imtet simulate` asks its worker")
         row, level = self.design(number), self._levels.get(number, 0)
@@ -227,11 +223,19 @@ class Run(Copied, Tabular):
             self._scenes[level] = Scene(None, **{**self.settings, "sim.accuracy": accuracy})
         return self._scenes[level].simulate(np.array([row[n] for n in self.variables]))
 
+    def verdict(self, number: int) -> str:
+        """What a design of a tower comes to, a sentence a line, where a command has judged it: the end of the study its knee."""
+        try:
+            with open(os.path.join(self.path, "verdicts.json")) as file:
+                text = str(json.load(file)[str(number)])
+        except (OSError, KeyError):
+            raise KeyError(f"no verdict is stored: `imtet report {self.path} --design {number}` finds it") from None
+        return text.replace(" RUN ", f" {shlex.quote(self.path)} ")
+
     def _table(self) -> Any:
         d = self.designs
         columns = {name: d[name] for name in d.dtype.names or () if name != "id"}
-        signs = [self._sense(k, name) for k, name in enumerate(self.objectives)]
-        return columns, d.id, self.objectives, signs, np.isin(d.id, self.front.id), (d.outcome == "ok") & ~(d.violation > 0)
+        return columns, d.id, self.objectives, self._signs, np.isin(d.id, self.front.id), (d.outcome == "ok") & ~(d.violation > 0)
 
 
 def open_run(path: Path) -> Run:
@@ -240,18 +244,13 @@ def open_run(path: Path) -> Run:
 
 
 def merge_fronts(*paths: Path) -> tuple[Records, npt.NDArray[np.int64]]:
-    """Merge the fronts of several runs of one problem; a design of several runs appears once.
+    """Merge the fronts of several runs of one problem, else ValueError; a design of several runs appears once.
 
     Returns
     -------
     front : numpy.recarray
     of : numpy.ndarray of int
         Number 0, 1, ... of the run of each row.
-
-    Raises
-    ------
-    ValueError
-        If the problems differ; the message says where.
     """
     runs = [Run(p) for p in paths]
     if not runs:
@@ -271,6 +270,5 @@ def merge_fronts(*paths: Path) -> tuple[Records, npt.NDArray[np.int64]]:
     rows, of = np.concatenate(fronts), np.repeat(np.arange(len(runs)), [len(f) for f in fronts])
     X = np.column_stack([rows[n] for n in runs[0].variables])
     once = np.sort(np.unique(X, axis=0, return_index=True)[1])
-    rows, of = rows[once], of[once]
-    keep = runs[0]._is_nondominated(rows)
+    keep = once[runs[0]._is_nondominated(rows[once])]
     return rows[keep].view(np.recarray), of[keep]

@@ -61,8 +61,8 @@ class Result(Copied):
         return getattr(self, name)
 
     def __repr__(self) -> str:
-        return "Result(" + ", ".join(f"{n}={getattr(self, n):.6g}" for n in self.names
-                                     if isinstance(getattr(self, n), float) and not np.isnan(getattr(self, n))) + ")"
+        known = [(n, self[n]) for n in self.names]
+        return f"Result({', '.join(f'{n}={v:.6g}' for n, v in known if isinstance(v, float) and v == v)})"
 
     def history(self, every: float | None = 0.0) -> Result:
         """Simulate the design again and give its response over time.

@@ -5,8 +5,6 @@
 #include "scene/neighbour.h"
 #include "settings/settings.h"
 
-enum { REPLICATES = 8 };
-
 /* Values of a setting with an effect, where it is not set, and without it. NULL: set_values
  * has it. */
 static const struct {
@@ -26,18 +24,6 @@ static const struct {
 };
 enum { BETWEEN, SHEAR, P_DELTA, GROUND, LIFT, WALLS, YIELDING, FLEXIBILITY, OFF_CENTRE, END, STEPS, KINDS };
 
-typedef struct {
-    Settings s; /* as given, but for objectives and limits */
-    Settings all;
-    const double *x;
-    double strong_s;
-    int is_brief;
-    int kind[LADDER_MAX]; /* of an effect: its line above */
-    Ladder *out;
-    Measured parts[1 + LADDER_MAX][REPLICATES];    /* with all, without each; 0 is the design, the others tell time */
-    Measured scene[1 + LADDER_MAX][LADDER_SCENES]; /* the same of the scenes; of the design as in parts */
-} Job;
-
 static void take_value(const char *key, const char *value, void *to)
 {
     (void)key;
@@ -46,55 +32,56 @@ static void take_value(const char *key, const char *value, void *to)
 
 /* -- effects ------------------------------------------------------------------------------------------------------- */
 
-/* Those of the settings, else weight alone; and a mat that never lifts. */
-static void set_anchors(const char *now, int is_set, LadderEffect *e)
+void ladder_anchors(const char *foundation, double anchors, char to[OPTION_TEXT_MAX])
 {
-    const char *word = strstr(now, " anchors=");
-    const int n = word ? (int)(word - now) : (int)strlen(now);
-    e->is_set = is_set;
-    snprintf(e->without, sizeof e->without, "%.*s anchors=inf%s", n, now,
+    const char *word = strstr(foundation, " anchors=");
+    const int n = word ? (int)(word - foundation) : (int)strlen(foundation);
+    snprintf(to, OPTION_TEXT_MAX, "%.*s anchors=%g%s", n, foundation, anchors,
              word ? word + 1 + strcspn(word + 1, " ") : "");
-    if (!is_set)
-        snprintf(e->with, sizeof e->with, "%.*s anchors=1%s", n, now, word ? word + 1 + strcspn(word + 1, " ") : "");
 }
 
-static void set_values(const Job *job, int kind, const char *now, LadderEffect *e)
+/* The effects before it are in `all`: the ground that a mat lifts from. */
+static void set_values(const Settings *all, int kind, double strong_s, LadderEffect *e)
 {
     Foundation f;
+    char now[OPTION_TEXT_MAX] = "";
+    settings_each(all, EFFECTS[kind].key, take_value, now);
     const char *with = EFFECTS[kind].with ? EFFECTS[kind].with : now;
     const char *without = EFFECTS[kind].without ? EFFECTS[kind].without : now;
-    *e = (LadderEffect){.words = EFFECTS[kind].words, .key = EFFECTS[kind].key};
+    *e = (LadderEffect){.words = EFFECTS[kind].words, .key = EFFECTS[kind].key, .is_finer = kind == STEPS};
     e->is_set = kind == STEPS ? strcmp(now, with) == 0 : strcmp(now, without) != 0 || kind == END;
     snprintf(e->with, sizeof e->with, "%s", e->is_set ? now : with);
     snprintf(e->without, sizeof e->without, "%s", kind == STEPS && e->is_set ? "standard" : without);
     if (kind == END)
-        snprintf(e->without, sizeof e->without, "%.6g", job->strong_s);
+        snprintf(e->without, sizeof e->without, "%.6g", strong_s);
     if (kind == GROUND && !e->is_set) /* a mat twice as wide as the core, held down */
-        snprintf(e->with, sizeof e->with, "soil=C radius=%g anchors=inf", job->s.core.width_m);
-    if (kind == LIFT)
-        set_anchors(now, foundation_parse(job->s.core.foundation, 1, &f, NULL) == STATUS_OK && f.anchors > 0, e);
+        snprintf(e->with, sizeof e->with, "soil=C radius=%g anchors=inf", all->core.width_m);
+    if (kind == LIFT) { /* what the settings have, else weight alone; and a mat that never lifts */
+        e->is_set = foundation_parse(now, 1, &f, NULL) == STATUS_OK && f.anchors > 0;
+        ladder_anchors(now, INFINITY, e->without);
+        if (!e->is_set)
+            ladder_anchors(now, 1, e->with);
+    }
 }
 
-static int is_there(const Job *job, int kind)
+static int is_there(const Settings *all, int kind, double strong_s)
 {
-    const Settings *s = &job->s;
+    const int has_beam = !neighbour_is_given(&all->core);
     Foundation f;
     Err err;
     switch (kind) {
     case BETWEEN:
-        return frame_is(s->building.model);
+        return frame_is(all->building.model);
     case SHEAR:
     case GROUND:
-        return !neighbour_is_given(&s->core);
+        return has_beam;
     case LIFT:
-        return !neighbour_is_given(&s->core) && foundation_parse(s->core.foundation, 1, &f, &err) == STATUS_OK &&
-               f.radius_m > 0 && f.rotation > 0;
+        return has_beam && foundation_parse(all->core.foundation, 1, &f, &err) == STATUS_OK && f.radius_m > 0 &&
+               f.rotation > 0;
     case WALLS:
-        return s->core.stiffeners > 0 || s->core.wall_factor > 0 || s->core.wall != WALL_FULL;
+        return has_beam && core_section(&all->core) == CORE_BOX;
     case END:
-        return s->sim.duration_s == 0 || job->strong_s < s->sim.duration_s;
-    case STEPS:
-        return !job->is_brief;
+        return all->sim.duration_s == 0 || strong_s < all->sim.duration_s;
     default:
         return 1;
     }
@@ -109,57 +96,28 @@ static Status find_hardening(const Settings *s, double *hardening, Err *err)
     return STATUS_OK;
 }
 
-static Status list_effects(Job *job, Err *err)
+Status ladder_effects(const Settings *s, double strong_s, LadderForm form, Ladder *l, Settings *all, Err *err)
 {
-    Ladder *l = job->out;
-    job->all = job->s;
-    for (int kind = 0; kind < KINDS; kind++) {
-        char now[OPTION_TEXT_MAX] = "";
-        LadderEffect *e = &l->effect[l->n];
-        if (!is_there(job, kind))
-            continue;
-        settings_each(&job->all, EFFECTS[kind].key, take_value, now);
-        set_values(job, kind, now, e);
-        job->kind[l->n++] = kind;
-        TRY(settings_put(&job->all, e->key, kind == STEPS ? e->without : e->with, err));
-    }
-    for (int i = 0; i < YIELDING_KEYS; i++)
-        settings_each(&job->s, YIELDING_KEY[i], take_value, l->yielding[i]);
-    return find_hardening(&job->all, &l->all_hardening, err);
-}
-
-Status ladder_effects(const Settings *s, double strong_s, Ladder *out, Settings *all, Err *err)
-{
-    Job *job;
-    TRY_ROOM(job, 1, "a ladder", err);
-    *job = (Job){.s = *s, .strong_s = strong_s, .is_brief = 1, .out = out};
-    *out = (Ladder){0};
-    const Status status = list_effects(job, err);
-    free(job);
+    *l = (Ladder){0};
     *all = *s;
-    for (size_t i = 0; i < out->n && status == STATUS_OK; i++) {
-        LadderEffect *e = &out->effect[i];
-        e->is_set = settings_gives(s, e->key);
-        e->cost_s = NAN;
-        if (e->is_set)
+    for (int kind = 0; kind < (form == LADDER_WHOLE ? KINDS : STEPS); kind++) {
+        LadderEffect *e = &l->effect[l->n];
+        const int is_given = form == LADDER_OPEN && settings_gives(s, EFFECTS[kind].key);
+        if (!is_there(all, kind, strong_s))
+            continue;
+        set_values(all, kind, strong_s, e);
+        if (is_given)
             settings_each(s, e->key, take_value, e->with);
         else
-            TRY(settings_put(all, e->key, e->with, err));
+            TRY(settings_put(all, e->key, e->is_finer ? e->without : e->with, err));
+        if (form == LADDER_OPEN)
+            e->is_set = is_given;
+        e->cost_s = NAN;
+        l->n++;
     }
-    return status;
-}
-
-Status ladder_judge(Settings *s, Err *err)
-{
-    TRY(settings_put(s, "search.objectives", "j1_m, drift_ratio, j3_g", err));
-    return settings_put(s, "search.limits", "none", err);
-}
-
-void ladder_as_built(SimOptions *o, long replicates)
-{
-    static const double GAP_SD_M = 1e-3;
-    o->replicates = replicates;
-    o->gap_tolerance_m = o->gap_tolerance_m > 0 ? o->gap_tolerance_m : GAP_SD_M;
+    for (int k = 0; k < LADDER_MEASURES; k++)
+        l->tolerance[k] = LADDER_TOLERANCE;
+    return find_hardening(all, &l->hardening, err);
 }
 
 /* -- what each changes --------------------------------------------------------------------------------------------- */
@@ -174,91 +132,25 @@ double ladder_change(const Measured *to, const Measured *from, int k)
     return fabs(by) < ROUNDING ? 0 : by;
 }
 
-double ladder_largest(const Ladder *l, double changes[LADDER_SCENES][LADDER_MEASURES], int *scene)
+double ladder_in_tolerances(const Ladder *l, const double change[LADDER_MEASURES], int scene)
 {
-    double most = -1;
-    for (int i = 0; i < LADDER_SCENES; i++)
-        for (int k = 0; k < LADDER_MEASURES; k++) {
-            const double of = fabs(changes[i][k]) / (i == 0 ? l->tolerance[k] : LADDER_TOLERANCE);
-            if (!(of <= most)) {
-                most = isnan(of) ? INFINITY : of;
-                *scene = i;
-            }
-        }
+    double most = 0;
+    for (int k = 0; k < LADDER_MEASURES; k++) {
+        const double of = fabs(change[k]) / (scene == 0 ? l->tolerance[k] : LADDER_TOLERANCE);
+        most = isnan(of) ? INFINITY : fmax(most, of);
+    }
     return most;
 }
 
-/* Of the simulations that were made: other processes disturb. NAN: one alone tells nothing. */
-static double least_seconds(const Job *job, const Measured parts[REPLICATES])
+double ladder_largest(const Ladder *l, double changes[LADDER_SCENES][LADDER_MEASURES], int *scene)
 {
-    double least = job->is_brief ? NAN : parts[0].seconds;
-    for (int i = 1; i < REPLICATES; i++)
-        if (parts[i].seconds > 0 && !job->is_brief)
-            least = fmin(least, parts[i].seconds);
-    return least;
-}
-
-static void conclude(Job *job, const ReplicateSummary *as_built)
-{
-    Ladder *l = job->out;
-    l->all_s = least_seconds(job, job->parts[0]);
-    for (int k = 0; k < LADDER_MEASURES; k++) {
-        const double scatter = as_built->sd[LADDER_MEASURE[k]] / as_built->mean[LADDER_MEASURE[k]];
-        l->value[k] = job->parts[0][0].value[LADDER_MEASURE[k]];
-        l->tolerance[k] = fmax(LADDER_TOLERANCE, isfinite(scatter) ? scatter : 0);
+    double most = -1;
+    for (int i = 0; i < LADDER_SCENES; i++) {
+        const double own = ladder_in_tolerances(l, changes[i], i);
+        *scene = own > most ? i : *scene;
+        most = fmax(most, own);
     }
-    for (size_t i = 0; i < l->n; i++) {
-        LadderEffect *e = &l->effect[i];
-        const int is_finer = job->kind[i] == STEPS; /* of which the model with all has the other value */
-        const size_t with = is_finer ? 1 + i : 0, without = is_finer ? 0 : 1 + i;
-        for (int c = 0; c < LADDER_SCENES; c++)
-            for (int k = 0; k < LADDER_MEASURES; k++)
-                e->change[c][k] = ladder_change(&job->scene[without][c], &job->scene[with][c], k);
-        e->cost_s = least_seconds(job, job->parts[with]) - least_seconds(job, job->parts[without]);
-        e->most = ladder_largest(l, e->change, &e->decided_in);
-        e->is_needed = e->is_kept = e->most > 1;
-        if (job->kind[i] == LIFT && e->is_kept)
-            l->effect[i - 1].is_kept = 1;
-    }
-}
-
-/* Scene 0 has all, the others lack an effect each. */
-static Status leave_out_each(Job *job, Err *err)
-{
-    const Ladder *l = job->out;
-    const char *const record = job->s.motion.record;
-    SceneChange scene[1 + LADDER_MAX] = {{0}};
-    SimTask task[(1 + LADDER_MAX) * LADDER_SCENES];
-    ReplicateSummary as_built;
-    size_t n = 0;
-    Settings s = job->all;
-    Problem p;
-    ladder_as_built(&s.sim, REPLICATES);
-    for (size_t i = 0; i < l->n; i++)
-        snprintf(scene[1 + i].setting, sizeof scene->setting, "%s=%s", l->effect[i].key,
-                 job->kind[i] == STEPS ? l->effect[i].with : l->effect[i].without);
-    TRY(tower_open_scenes(&p, &s, 1, &record, 1 + l->n, scene, err));
-    for (size_t i = 0; i <= l->n; i++) {
-        const int is_once = i > 0 && (job->kind[i - 1] == STEPS || job->is_brief);
-        task[n++] = (SimTask){.x = job->x,
-                              .scene = i,
-                              .n_parts = is_once ? 1 : REPLICATES,
-                              .parts = job->parts[i],
-                              .summary = i == 0 ? &as_built : NULL};
-        for (int c = 1; c < LADDER_SCENES; c++)
-            task[n++] = (SimTask){.kind = LADDER_SCENE[c], .x = job->x, .scene = i, .parts = &job->scene[i][c]};
-    }
-    const Status status = tower_run(&p, n, task, NULL, NULL, err);
-    problem_close(&p);
-    for (size_t i = 0; i <= l->n; i++)
-        job->scene[i][0] = job->parts[i][0];
-    for (int c = 0; c < LADDER_SCENES && status == STATUS_OK; c++)
-        if (job->scene[0][c].outcome != RUN_OK)
-            return bad_data(err, "ladder: the model with all effects failed (%s): %s", SCENES[LADDER_SCENE[c]].words,
-                            job->scene[0][c].reason);
-    if (status == STATUS_OK)
-        conclude(job, &as_built);
-    return status;
+    return most;
 }
 
 /* -- the set ------------------------------------------------------------------------------------------------------- */
@@ -272,23 +164,6 @@ Status ladder_put_set(const Ladder *l, Settings *s, Err *err)
     return STATUS_OK;
 }
 
-static Status simulate_set(const Job *job, Measured out[LADDER_SCENES], Err *err)
-{
-    Ladder *l = job->out;
-    Settings s = job->s;
-    Problem p;
-    SimTask task[LADDER_SCENES];
-    s.sim.replicates = 1;
-    TRY(ladder_put_set(l, &s, err));
-    for (int i = 0; i < LADDER_SCENES; i++)
-        task[i] = (SimTask){.kind = LADDER_SCENE[i], .x = job->x, .parts = &out[i]};
-    TRY(find_hardening(&s, &l->hardening, err));
-    TRY(tower_open(&p, &s, TOWER_SINGLE, LADDER_SCENES, err));
-    const Status status = tower_run(&p, LADDER_SCENES, task, NULL, NULL, err);
-    problem_close(&p);
-    return status;
-}
-
 LadderEffect *ladder_largest_left_out(Ladder *l)
 {
     LadderEffect *found = NULL;
@@ -298,35 +173,11 @@ LadderEffect *ladder_largest_left_out(Ladder *l)
     return found;
 }
 
-static Status shorten(Job *job, Err *err)
+void ladder_keep(Ladder *l, LadderEffect *e)
 {
-    Ladder *l = job->out;
-    for (LadderEffect *back = NULL;;) {
-        Measured set[LADDER_SCENES];
-        int scene;
-        const int is_fine = job->kind[l->n - 1] == STEPS && l->effect[l->n - 1].is_kept;
-        TRY(simulate_set(job, set, err));
-        for (int i = 0; i < LADDER_SCENES; i++)
-            for (int k = 0; k < LADDER_MEASURES; k++) {
-                l->off[i][k] = ladder_change(&set[i], &job->scene[is_fine ? l->n : 0][i], k);
-                l->set[i][k] = set[i].outcome == RUN_OK ? set[i].value[LADDER_MEASURE[k]] : NAN;
-            }
-        l->set_s = job->is_brief ? NAN : set->seconds;
-        back = ladder_largest_left_out(l);
-        if (!back || ladder_largest(l, l->off, &scene) <= 1)
-            return STATUS_OK;
-        back->is_kept = 1;
-    }
-}
-
-Status ladder_find(const Settings *s, const double x[], double strong_s, int is_brief, Ladder *out, Err *err)
-{
-    Job job = {.s = *s, .x = x, .strong_s = strong_s, .is_brief = is_brief, .out = out};
-    *out = (Ladder){0};
-    TRY(ladder_judge(&job.s, err));
-    TRY(list_effects(&job, err));
-    TRY(leave_out_each(&job, err));
-    return shorten(&job, err);
+    e->is_kept = 1;
+    if (e > l->effect && strcmp(e->key, e[-1].key) == 0)
+        e[-1].is_kept = 1;
 }
 
 /* -- in words ------------------------------------------------------------------------------------------------------ */
@@ -351,20 +202,18 @@ json_t *ladder_json(const Ladder *l)
         const LadderEffect *e = &l->effect[i];
         json_t *row = json_of("without=%s", e->words);
         json_object_update_new(row, json_by_measure(e->change[0], "_pct", 100));
-        json_put(row, "most_in=%s in_tolerances=%g costs_ms=%g verdict=%s is_set=%s setting=%s with=%s otherwise=%s",
+        json_put(row,
+                 "most_in=%s in_tolerances=%g costs_ms=%g verdict=%s is_set=%s kept=%s setting=%s "
+                 "with=%s otherwise=%s",
                  SCENES[LADDER_SCENE[e->decided_in]].key, e->most, 1e3 * e->cost_s, e->is_needed ? "needed" : "not",
-                 e->is_set ? "yes" : "no", e->key, e->with, e->without);
+                 e->is_set ? "yes" : "no", e->is_kept ? "yes" : "no", e->key, e->with, e->without);
         json_array_append_new(effects, row);
         if (ladder_says(l, i))
             json_object_set_new(settings, e->key, json_string(e->is_kept ? e->with : e->without));
     }
-    if (l->hardening > 0)
-        json_put(settings, "building.hardening=%g", l->hardening);
-    for (int i = 0; l->hardening > 0 && i < (strcmp(l->yielding[0], "bilinear") == 0 ? 1 : YIELDING_KEYS); i++)
-        json_object_set_new(settings, YIELDING_KEY[i], json_string(l->yielding[i]));
     for (int i = 0; i < LADDER_SCENES; i++)
         json_object_set_new(by_set, SCENES[LADDER_SCENE[i]].key, json_by_measure(l->set[i], "", 1));
-    json_put(all, "ms=%g hardening=%g", 1e3 * l->all_s, l->all_hardening);
+    json_put(all, "ms=%g hardening=%g", 1e3 * l->all_s, l->hardening);
     json_put(set, "ms=%g", 1e3 * l->set_s);
     return json_of("effects=%p with_all=%p tolerance=%p enough=%p by_the_set=%p settings=%p", effects, all,
                    json_by_measure(l->tolerance, "_pct", 100), set, by_set, settings);

@@ -3,8 +3,8 @@
 #include "motion/suite.h"
 #include "settings/settings.h"
 
-enum { DESIGNS = 3, COPIES = 3, SIMULATIONS_MIN = 60 };
-static const double SHARE = 0.03;
+enum { DESIGNS = 3, COPIES = 3, STRUCTURES = 8, SIMULATIONS_MIN = 60 };
+static const double SHARE = 0.03, GAP_SD_M = 1e-3;
 
 /* What adds up over time: it hangs on the weak end of a record, where peaks do not. */
 static const MeasureSet ADDED_UP = (MeasureSet)1 << MEASURE_ED1 | (MeasureSet)1 << MEASURE_ED5_10 |
@@ -15,26 +15,29 @@ static const MeasureSet ADDED_UP = (MeasureSet)1 << MEASURE_ED1 | (MeasureSet)1 
 
 /* A case by a model: the design, whose copies tell the time, and the other scenes. */
 typedef struct {
-    Measured scene[LADDER_SCENES], copy[COPIES];
+    Measured scene[LADDER_SCENES], copy[STRUCTURES];
     double least_s;
 } Tried;
 
 typedef struct {
     size_t record;
     const double *x;
-    Tried all, set; /* by all effects, by the set at hand */
+    Tried all, set;                /* by all effects, by the set at hand */
+    Measured finer[LADDER_SCENES]; /* by all with more steps, where they are among the effects */
 } Case;
 
 typedef struct {
+    LadderForm form;
     Settings s, all;
     Ladder *l;
-    const Observer *stop;
+    Observer stop;
     MeasureSet judged;                     /* by the study */
     size_t n_records, n_cases, most, used; /* most: simulations that may be used */
     char record[TOWER_RECORDS_MAX][OPTION_TEXT_MAX];
     Measured bare[TOWER_RECORDS_MAX]; /* the building alone by the model with all; of records that some case has had */
     unsigned char has_bare[TOWER_RECORDS_MAX];
-    size_t n_copies;                  /* with which a set is tried */
+    size_t n_structures;              /* as built, by all effects */
+    size_t n_each, n_copies;          /* of the design without an effect, and by a set */
     double variance[LADDER_MEASURES]; /* relative, of structures as built; summed over the cases */
     double X[DESIGNS * DESIGN_VARIABLES_MAX];
     Case *at; /* (n_cases) */
@@ -62,71 +65,78 @@ static Status open_records(Choosing *c, Problem *p, const Settings *s, Err *err)
     return tower_open_scenes(p, s, c->n_records, path, c->n_records, scene, err);
 }
 
-/* Where the strong part of all records is over; INFINITY: behind the end of one of them. */
-static Status find_strong_part(Choosing *c, double *strong_s, Err *err)
+/* Where the strong part of all records is over; fits: before the end of each of them. */
+static Status find_strong_part(Choosing *c, double *strong_s, int *fits, Err *err)
 {
     Problem p;
-    Building b;
-    Motion m;
+    const Scenario *w;
     double shortest = INFINITY;
     *strong_s = 0;
-    TRY(building_load(&b, &c->s.building, err));
-    const double period = 2 * M_PI / b.omega[0];
-    building_free(&b);
     TRY(open_records(c, &p, &c->s, err));
     Status status = STATUS_OK;
-    for (size_t i = 0; i < c->n_records && (status = tower_motion(&p, i, &m, err)) == STATUS_OK; i++) {
-        *strong_s = fmax(*strong_s, motion_strong_part(&m, period));
-        shortest = fmin(shortest, motion_duration(&m));
-        motion_free(&m);
+    for (size_t i = 0; i < c->n_records && (status = tower_acquire(p.self, i, &w, err)) == STATUS_OK; i++) {
+        const double period = 2 * M_PI / scene_building(w->scene)->omega[0];
+        *strong_s = fmax(*strong_s, motion_strong_part(&w->motion, period));
+        shortest = fmin(shortest, motion_duration(&w->motion));
+        tower_release(p.self, i);
     }
     problem_close(&p);
-    *strong_s = *strong_s < shortest ? *strong_s : INFINITY;
+    *fits = *strong_s < shortest;
     return status;
 }
 
-/* The effects of the scene; those that are not open are kept as the settings have them. */
+/* The effects of the scene; in a study's choice those that are not open are kept as the settings have them. */
 static Status open_effects(Choosing *c, Err *err)
 {
-    const Settings *s = &c->s;
     double strong_s;
-    TRY(find_strong_part(c, &strong_s, err));
-    TRY(ladder_effects(s, strong_s, c->l, &c->all, err));
-    for (size_t i = 0; i < c->l->n; i++) {
+    int fits;
+    TRY(find_strong_part(c, &strong_s, &fits, err));
+    TRY(ladder_effects(&c->s, strong_s, c->form, c->l, &c->all, err));
+    for (size_t i = 0; i < c->l->n && c->form == LADDER_OPEN; i++) {
         LadderEffect *e = &c->l->effect[i];
         if (strcmp(e->key, "sim.duration_s") == 0)
-            e->is_set |= c->judged & ADDED_UP || isinf(strong_s);
+            e->is_set |= c->judged & ADDED_UP || !fits;
         e->is_kept = e->is_set;
         if (e->is_set)
             memcpy(e->without, e->with, sizeof e->without);
     }
-    for (int k = 0; k < LADDER_MEASURES; k++)
-        c->l->tolerance[k] = LADDER_TOLERANCE;
     return STATUS_OK;
 }
 
-static Status begin(Choosing **out, const Settings *s, const Observer *stop, Ladder *l, Err *err)
+static Status begin(Choosing **out, const Settings *s, Ladder *l, Err *err)
 {
     Choosing *c;
-    MeasureOrder order;
     TRY_ROOM(c, 1, "the choice of a model", err);
     *out = c;
+    c->s = *s;
+    c->l = l;
+    TRY(settings_put(&c->s, "search.objectives", "j1_m, drift_ratio, j3_g", err)); /* LADDER_MEASURE */
+    return settings_put(&c->s, "search.limits", "none", err);
+}
+
+/* Of a study: its records, and what it may cost. */
+static Status begin_study(Choosing **out, const Settings *s, const Observer *stop, Ladder *l, Err *err)
+{
+    MeasureOrder order;
+    TRY(begin(out, s, l, err));
+    Choosing *c = *out;
     TRY(measures_order(&order, s->search.objectives, s->search.limits, 0, err));
     TRY(suite_of_study(&s->motion, take_record, c, err));
     const double all = (double)s->search.max_evals * (double)s->sim.replicates * (double)c->n_records;
+    c->form = LADDER_OPEN;
     c->most = MAX_OF((size_t)(SHARE * all), (size_t)SIMULATIONS_MIN);
     c->judged = order.judged;
-    c->s = *s;
-    c->l = l;
-    c->stop = stop;
-    return ladder_judge(&c->s, err);
+    c->stop = *stop;
+    c->n_structures = c->n_copies = COPIES;
+    c->n_each = 1;
+    return STATUS_OK;
 }
 
 /* -- simulations --------------------------------------------------------------------------------------------------- */
 
 static Status run_tasks(Choosing *c, Problem *p, size_t n, const SimTask task[], Err *err)
 {
-    p->observer = *c->stop;
+    p->observer = c->stop;
     for (size_t i = 0; i < n; i++)
         c->used += MAX_OF(task[i].n_parts, 1);
     const Status status = tower_run(p, n, task, NULL, NULL, err);
@@ -143,34 +153,41 @@ static void take_copies(Tried *t, size_t n)
         t->least_s = fmin(t->least_s, t->copy[i].seconds);
 }
 
+/* Scene j of a case: of the design n parts, which are its copies. */
+static SimTask task_of(Tried *t, int j, size_t n, const Case *k, size_t scene)
+{
+    return (SimTask){.kind = LADDER_SCENE[j],
+                     .x = k->x,
+                     .scene = scene,
+                     .n_parts = j == 0 ? n : 1,
+                     .parts = j == 0 ? t->copy : &t->scene[j]};
+}
+
+/* The first scene that fails, or LADDER_SCENES. */
+static int failing(const Tried *t)
+{
+    int j = 0;
+    while (j < LADDER_SCENES && t->scene[j].outcome == RUN_OK)
+        j++;
+    return j;
+}
+
 /* Every case in all scenes by those settings: by the set, or is_all. */
 static Status simulate_cases(Choosing *c, const Settings *with, int is_all, Err *err)
 {
     Problem p;
     SimTask *task;
     Settings s = *with;
-    Measured bare[TOWER_RECORDS_MAX];
-    int wants_bare[TOWER_RECORDS_MAX] = {0};
-    size_t n = 0;
     s.sim.replicates = (long)c->n_copies;
-    TRY_ROOM(task, c->n_cases * (LADDER_SCENES - 1) + c->n_records, "simulations", err);
-    for (size_t i = 0; i < c->n_cases; i++) {
-        Case *k = &c->at[i];
-        Tried *t = is_all ? &k->all : &k->set;
-        task[n++] = (SimTask){.x = k->x, .scene = k->record, .n_parts = c->n_copies, .parts = t->copy};
-        task[n++] = (SimTask){.kind = SCENE_RIGID, .x = k->x, .scene = k->record, .parts = &t->scene[1]};
-        wants_bare[k->record] = 1;
+    TRY_ROOM(task, c->n_cases * LADDER_SCENES, "simulations", err);
+    for (size_t i = 0; i < c->n_cases * LADDER_SCENES; i++) {
+        Case *k = &c->at[i / LADDER_SCENES];
+        task[i] = task_of(is_all ? &k->all : &k->set, (int)(i % LADDER_SCENES), c->n_copies, k, k->record);
     }
-    for (size_t r = 0; r < c->n_records; r++)
-        if (wants_bare[r])
-            task[n++] = (SimTask){.kind = SCENE_NO_CORE, .scene = r, .parts = &bare[r]};
     Status status = open_records(c, &p, &s, err);
-    THEN(status, run_tasks(c, &p, n, task, err));
-    for (size_t i = 0; i < c->n_cases && status == STATUS_OK; i++) {
-        Tried *t = is_all ? &c->at[i].all : &c->at[i].set;
-        take_copies(t, c->n_copies);
-        t->scene[2] = bare[c->at[i].record];
-    }
+    THEN(status, run_tasks(c, &p, c->n_cases * LADDER_SCENES, task, err));
+    for (size_t i = 0; i < c->n_cases && status == STATUS_OK; i++)
+        take_copies(is_all ? &c->at[i].all : &c->at[i].set, c->n_copies);
     free(task);
     return status;
 }
@@ -179,6 +196,7 @@ static Status simulate_cases(Choosing *c, const Settings *with, int is_all, Err 
 static Status try_set(Choosing *c, int *is_enough, Err *err)
 {
     Ladder *l = c->l;
+    const LadderEffect *last = &l->effect[l->n - 1];
     Settings s = c->s;
     int scene;
     TRY(ladder_put_set(l, &s, err));
@@ -187,14 +205,15 @@ static Status try_set(Choosing *c, int *is_enough, Err *err)
     l->all_s = l->set_s = 0;
     for (size_t i = 0; i < c->n_cases; i++) {
         const Case *k = &c->at[i];
+        const Measured *whole = last->is_finer && last->is_kept ? k->finer : k->all.scene;
         l->all_s += k->all.least_s / (double)c->n_cases;
         l->set_s += k->set.least_s / (double)c->n_cases;
         for (int j = 0; j < LADDER_SCENES; j++)
             for (int m = 0; m < LADDER_MEASURES; m++) {
-                const double by = ladder_change(&k->set.scene[j], &k->all.scene[j], m);
+                const double by = ladder_change(&k->set.scene[j], &whole[j], m);
                 l->off[j][m] = fabs(by) <= fabs(l->off[j][m]) ? l->off[j][m] : by;
                 if (i == 0)
-                    l->set[j][m] = k->set.scene[j].value[LADDER_MEASURE[m]];
+                    l->set[j][m] = k->set.scene[j].outcome == RUN_OK ? k->set.scene[j].value[LADDER_MEASURE[m]] : NAN;
             }
     }
     *is_enough = ladder_largest(l, l->off, &scene) <= 1;
@@ -210,7 +229,7 @@ static Status settle(Choosing *c, Err *err)
         LadderEffect *back = ladder_largest_left_out(c->l);
         if (is_enough || !back)
             return STATUS_OK;
-        back->is_kept = 1;
+        ladder_keep(c->l, back);
         if (2 * c->used - before > c->most)
             return STATUS_OK;
     }
@@ -218,32 +237,39 @@ static Status settle(Choosing *c, Err *err)
 
 /* -- each effect is left out --------------------------------------------------------------------------------------- */
 
-/* The building alone has neither core nor contacts, and a rigid connection no contacts. */
+/* The building alone has neither core nor contacts; a rigid connection has no contacts, but may be off the centre. */
 static int reaches(const LadderEffect *e, SceneKind scene)
 {
+    const int is_of_contacts = strncmp(e->key, "contact.", 8) == 0, is_of_core = strncmp(e->key, "core.", 5) == 0;
     return scene == SCENE_IMPACT ||
-           (strncmp(e->key, "contact.", 8) != 0 && (scene == SCENE_RIGID || strncmp(e->key, "core.", 5) != 0));
+           (scene == SCENE_RIGID ? !is_of_contacts || strcmp(e->key, "contact.eccentricity") == 0
+                                 : !is_of_contacts && !is_of_core);
+}
+
+/* A ladder asks what the settings have too. */
+static int is_open(const Choosing *c, const LadderEffect *e)
+{
+    return c->form != LADDER_OPEN || !e->is_set;
 }
 
 /* Has effect i to be left out in that scene of a case? */
 static int is_asked(const Choosing *c, const Case *k, size_t i, SceneKind scene)
 {
     const LadderEffect *e = &c->l->effect[i];
-    return !e->is_set && !e->is_needed && reaches(e, scene) && !(scene == SCENE_NO_CORE && c->has_bare[k->record]);
+    return is_open(c, e) && !e->is_needed && reaches(e, scene) && !(scene == SCENE_NO_CORE && c->has_bare[k->record]);
 }
 
 static size_t simulations_of(const Choosing *c, const Case *k)
 {
-    size_t n = COPIES + 1 + !c->has_bare[k->record];
+    size_t n = c->n_structures + 1 + !c->has_bare[k->record];
     for (size_t i = 0; i < c->l->n; i++)
         for (int scene = 0; scene < LADDER_SCENES; scene++)
             n += is_asked(c, k, i, LADDER_SCENE[scene]);
     return n;
 }
 
-/* What a case says: the scatter as built, and what each effect changes. The model with all has worked in it. */
-static void learn(Choosing *c, const Case *k, const ReplicateSummary *as_built,
-                  const Measured without[LADDER_MAX][LADDER_SCENES])
+/* How the design scatters as built, over all cases. */
+static void learn_scatter(Choosing *c, const Case *k, const ReplicateSummary *as_built)
 {
     Ladder *l = c->l;
     for (int m = 0; m < LADDER_MEASURES; m++) {
@@ -253,22 +279,36 @@ static void learn(Choosing *c, const Case *k, const ReplicateSummary *as_built,
         if (c->n_cases == 1)
             l->value[m] = k->all.scene[0].value[LADDER_MEASURE[m]];
     }
+}
+
+/* What each effect changes in a case. The model with all has worked in it. */
+static void learn(Choosing *c, Case *k, const Tried without[LADDER_MAX])
+{
+    Ladder *l = c->l;
     for (size_t i = 0; i < l->n; i++) {
         LadderEffect *e = &l->effect[i];
         double change[LADDER_SCENES][LADDER_MEASURES] = {{0}};
         int scene = 0;
-        if (e->is_set || e->is_needed)
+        if (!is_open(c, e) || e->is_needed)
             continue;
         for (int s = 0; s < LADDER_SCENES; s++)
-            for (int m = 0; m < LADDER_MEASURES && is_asked(c, k, i, LADDER_SCENE[s]); m++)
-                change[s][m] = ladder_change(&without[i][s], &k->all.scene[s], m);
-        const double most = ladder_largest(l, change, &scene);
+            for (int m = 0; m < LADDER_MEASURES && is_asked(c, k, i, LADDER_SCENE[s]); m++) {
+                const Measured *other = &without[i].scene[s], *whole = &k->all.scene[s];
+                change[s][m] = e->is_finer ? ladder_change(whole, other, m) : ladder_change(other, whole, m);
+            }
+        const double most = ladder_largest(l, change, &scene), less_s = k->all.least_s - without[i].least_s;
         if (c->n_cases == 1 || most > e->most) {
             memcpy(e->change, change, sizeof change);
             e->most = most;
             e->decided_in = scene;
         }
-        e->is_needed = e->is_kept = most > 1;
+        if (c->form == LADDER_WHOLE)
+            e->cost_s = e->is_finer ? -less_s : less_s;
+        if (e->is_finer)
+            memcpy(k->finer, without[i].scene, sizeof k->finer);
+        e->is_needed = most > 1;
+        if (e->is_needed)
+            ladder_keep(l, e);
     }
 }
 
@@ -279,37 +319,41 @@ static Status try_case(Choosing *c, size_t record, const double *x, Err *why, Er
     Case *k = &c->at[c->n_cases];
     SceneChange scene[1 + LADDER_MAX] = {{0}};
     SimTask task[(1 + LADDER_MAX) * LADDER_SCENES];
-    Measured without[LADDER_MAX][LADDER_SCENES];
+    Tried without[LADDER_MAX];
     ReplicateSummary as_built;
     Settings s = c->all;
     Problem p;
     size_t n = 0;
     *k = (Case){.record = record, .x = x};
-    ladder_as_built(&s.sim, COPIES);
-    task[n++] = (SimTask){.x = x, .n_parts = COPIES, .parts = k->all.copy, .summary = &as_built};
-    task[n++] = (SimTask){.kind = SCENE_RIGID, .x = x, .parts = &k->all.scene[1]};
-    if (!c->has_bare[record])
-        task[n++] = (SimTask){.kind = SCENE_NO_CORE, .parts = &c->bare[record]};
+    s.sim.replicates = (long)c->n_structures;
+    s.sim.gap_tolerance_m = s.sim.gap_tolerance_m > 0 ? s.sim.gap_tolerance_m : GAP_SD_M;
+    for (int j = 0; j < LADDER_SCENES - c->has_bare[record]; j++)
+        task[n++] = task_of(&k->all, j, c->n_structures, k, 0);
+    task->summary = &as_built;
+    k->all.scene[2] = c->bare[record];
     for (size_t i = 0; i < l->n; i++) {
-        snprintf(scene[1 + i].setting, sizeof scene->setting, "%s=%s", l->effect[i].key, l->effect[i].without);
+        const LadderEffect *e = &l->effect[i];
+        snprintf(scene[1 + i].setting, sizeof scene->setting, "%s=%s", e->key, e->is_finer ? e->with : e->without);
         for (int j = 0; j < LADDER_SCENES; j++)
             if (is_asked(c, k, i, LADDER_SCENE[j]))
-                task[n++] = (SimTask){.kind = LADDER_SCENE[j], .x = x, .scene = 1 + i, .parts = &without[i][j]};
+                task[n++] = task_of(&without[i], j, c->n_each, k, 1 + i);
     }
     TRY(tower_open_scenes(&p, &s, 1, &(const char *){c->record[record]}, 1 + l->n, scene, err));
     TRY(run_tasks(c, &p, n, task, err));
-    take_copies(&k->all, COPIES);
-    k->all.scene[2] = c->bare[record];
-    for (int j = 0; j < LADDER_SCENES; j++)
-        if (k->all.scene[j].outcome != RUN_OK) {
-            bad_data(why,
-                     "sim.model: the model with all effects fails (%s): %s; set sim.model = given, and the effects "
-                     "that the scene needs",
-                     SCENES[LADDER_SCENE[j]].words, k->all.scene[j].reason);
-            return STATUS_OK;
-        }
+    take_copies(&k->all, c->n_structures);
+    for (size_t i = 0; i < l->n; i++)
+        if (is_asked(c, k, i, SCENE_IMPACT))
+            take_copies(&without[i], c->n_each);
+    c->bare[record] = k->all.scene[2];
+    const int fails = failing(&k->all);
+    if (fails < LADDER_SCENES) {
+        bad_data(why, "the model with all effects fails (%s): %s", SCENES[LADDER_SCENE[fails]].words,
+                 k->all.scene[fails].reason);
+        return STATUS_OK;
+    }
     c->n_cases++;
-    learn(c, k, &as_built, without);
+    learn_scatter(c, k, &as_built);
+    learn(c, k, without);
     c->has_bare[record] = 1;
     return STATUS_OK;
 }
@@ -335,14 +379,14 @@ static Status try_cases(Choosing *c, size_t n_var, Err *err)
     Err why = {0};
     for (size_t i = 0; i < DESIGNS * n; i++) {
         const size_t record = i % n, design = (i + (n % DESIGNS == DESIGNS - 1 ? 0 : i / n)) % DESIGNS;
-        const size_t to_try = (COPIES + 1) * (c->n_cases + 1) + MIN_OF(n, c->n_cases + 1);
+        const size_t to_try = (COPIES + 2) * (c->n_cases + 1);
         if (c->n_cases > 0 && c->used + simulations_of(c, &(Case){.record = record}) + to_try > c->most)
             break;
         TRY(try_case(c, record, c->X + design * n_var, &why, err));
     }
-    if (c->n_cases == 0)
-        *err = why;
-    return c->n_cases > 0 ? STATUS_OK : why.code;
+    return c->n_cases > 0
+               ? STATUS_OK
+               : bad_data(err, "sim.model: %s; set sim.model = given, and the effects that the scene needs", why.text);
 }
 
 /* -- all of it ----------------------------------------------------------------------------------------------------- */
@@ -351,7 +395,6 @@ static Status choose(Choosing *c, Err *err)
 {
     DesignSpace space;
     size_t n_open = 0;
-    c->n_copies = COPIES;
     TRY(open_effects(c, err));
     for (size_t i = 0; i < c->l->n; i++)
         n_open += !c->l->effect[i].is_set;
@@ -370,11 +413,42 @@ static void end(Choosing *c)
     free(c);
 }
 
+/* One case, in which everything is asked; the set is tried as often as it takes. */
+static Status climb(Choosing *c, const double x[], Err *err)
+{
+    Err why = {0};
+    c->most = SIZE_MAX;
+    c->n_structures = STRUCTURES;
+    c->n_each = c->n_copies = c->form == LADDER_WHOLE ? STRUCTURES : 1;
+    TRY(take_record(c->s.motion.record, c, err));
+    TRY(open_effects(c, err));
+    TRY_ROOM(c->at, 1, "designs", err);
+    TRY(try_case(c, 0, x, &why, err));
+    if (c->n_cases == 0)
+        return bad_data(err, "%s", why.text);
+    TRY(settle(c, err));
+    if (c->form == LADDER_BRIEF) /* one simulation tells no time: other processes disturb */
+        c->l->all_s = c->l->set_s = NAN;
+    return STATUS_OK;
+}
+
+Status ladder_find(const Settings *s, const double x[], LadderForm form, Ladder *out, Err *err)
+{
+    Choosing *c = NULL;
+    Status status = begin(&c, s, out, err);
+    if (status == STATUS_OK) {
+        c->form = form;
+        status = climb(c, x, err);
+    }
+    end(c);
+    return status;
+}
+
 Status model_choose(Settings *s, const Observer *stop, ModelChoice *out, Err *err)
 {
     Choosing *c = NULL;
     *out = (ModelChoice){.n_designs = DESIGNS};
-    Status status = begin(&c, s, stop, &out->ladder, err);
+    Status status = begin_study(&c, s, stop, &out->ladder, err);
     THEN(status, choose(c, err));
     THEN(status, ladder_put_set(&out->ladder, s, err));
     if (status == STATUS_OK) {
@@ -395,17 +469,13 @@ static Status list_cases(Choosing *c, size_t n, size_t n_var, const double X[], 
         if (!c->l->effect[i].is_set)
             TRY(settings_put(&c->all, c->l->effect[i].key, c->l->effect[i].with, err));
     TRY_ROOM(c->at, n * c->n_records, "designs", err);
-    for (size_t i = 0; i < n * c->n_records && 3 * (2 * (i + 1) + c->n_records) <= c->most; i++)
+    for (size_t i = 0; i < n * c->n_records && 3 * LADDER_SCENES * (i + 1) <= c->most; i++)
         c->at[c->n_cases++] = (Case){.record = i % c->n_records, .x = X + i / c->n_records * n_var};
     TRY(simulate_cases(c, &c->all, 1, err));
     size_t n_known = 0;
-    for (size_t i = 0; i < c->n_cases; i++) {
-        int works = 1;
-        for (int scene = 0; scene < LADDER_SCENES; scene++)
-            works &= c->at[i].all.scene[scene].outcome == RUN_OK;
-        if (works)
+    for (size_t i = 0; i < c->n_cases; i++)
+        if (failing(&c->at[i].all) == LADDER_SCENES)
             c->at[n_known++] = c->at[i];
-    }
     c->n_cases = n_known;
     return STATUS_OK;
 }
@@ -420,7 +490,7 @@ static Status confirm(Choosing *c, ModelCase cases[], Err *err)
         cases[i] = (ModelCase){.x = c->at[i].x, .record = c->at[i].record, .by_set = c->at[i].set.scene[0]};
     LadderEffect *back = ladder_largest_left_out(c->l);
     if (!is_enough && back) {
-        back->is_kept = 1;
+        ladder_keep(c->l, back);
         TRY(settle(c, err));
     }
     for (size_t i = 0; i < c->n_cases; i++)
@@ -433,7 +503,7 @@ Status model_confirm(const Settings *s, size_t n, size_t n_var, const double X[]
 {
     Choosing *c = NULL;
     *cases = NULL;
-    Status status = begin(&c, s, stop, l, err);
+    Status status = begin_study(&c, s, stop, l, err);
     THEN(status, list_cases(c, n, n_var, X, err));
     if (status == STATUS_OK && !(*cases = calloc(c->n_cases + 1, sizeof **cases)))
         status = fail_memory(err, c->n_cases, "designs");

@@ -7,7 +7,8 @@
  *              every record of the study. The first cases have all designs and all records once
  *   choosing   in every case each effect that no case before has needed is left out of the model with all; then the
  *              set is tried in every case, and what is left out and changes most is put back until it is within the
- *              tolerance. As the ladder, but for the scatter as built: that of COPIES structures of each case
+ *              tolerance. As the ladder, which is one case in which everything is asked, but for the scatter as built:
+ *              that of COPIES structures of each case
  *   confirming the set is tried in the same way in cases of given designs
  *   cost       60 simulations or 3 % of those of the study, the larger: cases beyond are not looked at, and a set that
  *              cannot be tried any more has one more effect than the last one that was

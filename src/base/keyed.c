@@ -39,9 +39,9 @@ Status keyed_numbers(const char *setting, const char *text, unsigned kind, size_
             end++;
         }
         if (end == value || *end || !(x[i] >= k->least && x[i] <= k->most))
-            return bad_data(err, "%s: '%.60s' is no number from %g to %g%s%.*s", setting, word, k->least, k->most,
-                            k->letters ? " and no capital letter from A to " : "", k->letters,
-                            (char[]){last_letter(k)});
+            return bad_data(err, "%s: '%.60s' is no number from %g to %g%s%.*s%s", setting, word, k->least, k->most,
+                            k->letters ? " and no capital letter from A to " : "", k->letters, (char[]){last_letter(k)},
+                            strchr(word, ',') ? "; blanks part them, no commas" : "");
     }
     return STATUS_OK;
 }

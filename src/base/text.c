@@ -1,5 +1,6 @@
 #include "base/text.h"
 
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -80,6 +81,16 @@ char *text_shell(const char *word, char *to)
         end += *word == '\'' ? sprintf(end, "'\\''") : sprintf(end, "%c", *word);
     sprintf(end, "%s", is_plain ? "" : "'");
     return to;
+}
+
+void text_set(FILE *out, const char *assignment, ...)
+{
+    char setting[1024], text[4 * sizeof setting + 3];
+    va_list list;
+    va_start(list, assignment);
+    vsnprintf(setting, sizeof setting, assignment, list);
+    va_end(list);
+    fprintf(out, " --set %s", text_shell(setting, text));
 }
 
 void text_html(FILE *out, const char *words)

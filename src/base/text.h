@@ -15,5 +15,8 @@ int text_ends(const char *text, const char *end); /* a path in ".csv", say */
 /* A word of a command line, in quotes where a shell would take it otherwise; to has room for 4 strlen(word) + 3. */
 char *text_shell(const char *word, char *to);
 
+/* " --set ASSIGNMENT", as a shell takes it. */
+__attribute__((format(printf, 2, 3))) void text_set(FILE *out, const char *assignment, ...);
+
 /* Words of users inside HTML or SVG. */
 void text_html(FILE *out, const char *words);

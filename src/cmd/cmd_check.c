@@ -407,7 +407,7 @@ static void open_study(Check *c, const Settings *s, CheckedScene *p)
 
 static void say_ladder(Document *d, json_t *ladder)
 {
-    static const char *const UNSHOWN[] = {"setting", "with", "otherwise"};
+    static const char *const UNSHOWN[] = {"kept", "setting", "with", "otherwise"};
     json_t *rows = json_deep_copy(json_object_get(ladder, "effects")), *row;
     size_t i;
     json_array_foreach(rows, i, row) for (size_t k = 0; k < N_OF(UNSHOWN); k++) json_object_del(row, UNSHOWN[k]);
@@ -435,9 +435,7 @@ static void climb(Check *c, const CheckedScene *p)
 {
     Err e = {0};
     Ladder *ladder = calloc(1, sizeof *ladder);
-    const double period = 2 * M_PI / p->building.omega[0];
-    const Status status = ladder ? ladder_find(p->s, p->x, motion_strong_part(&p->motion, period), 0, ladder, &e)
-                                 : fail_memory(&e, 1, "a ladder");
+    const Status status = ladder ? ladder_find(p->s, p->x, LADDER_WHOLE, ladder, &e) : fail_memory(&e, 1, "a ladder");
     if (note(c, status, "--ladder", &e)) {
         json_t *o = ladder_json(ladder);
         json_put(o, "design=%p", ladder_design(p));

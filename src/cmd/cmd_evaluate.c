@@ -5,6 +5,7 @@
 #include "base/figure.h"
 #include "base/json.h"
 #include "base/list.h"
+#include "base/text.h"
 #include "cmd/commands.h"
 #include "cmd/demands.h"
 #include "cmd/designs.h"
@@ -160,25 +161,52 @@ static void say_refused(Document *d, const Evaluations *e)
             document_say(d, "p", "not read: %s", e->record[i].why.text);
 }
 
-/* At one intensity, for people: it takes forces, which files would have then too. */
+/* At one intensity: it takes forces, which a table in a file would have then too. */
 static int has_verdict(const Args *args, const Evaluations *e)
 {
-    return !e->level && !args_has(args, "--csv") && !args_has(args, "--json");
+    return !e->level && !args_has(args, "--csv");
 }
 
-/* With nothing but --design that of the run, else one over these records. */
+/* With nothing but --design that of the run, else one over these records; NULL: why tells. */
+static char *find_verdict(const Args *args, const Chosen *c, const Settings *s, const Evaluations *e, Err *why)
+{
+    char *text = NULL, *operand = NULL, quoted[4 * PATH_MAX + 3], id[24];
+    size_t length;
+    if (c->id > 0 && args->n_given == args_has(args, "--design") + args_has(args, "--json"))
+        return stored_verdict(c->run, c->row, NULL, why);
+    FILE *out = text_open(&operand, &length);
+    if (out)
+        fputs(text_shell(args->operand, quoted), out);
+    for (int i = 0; i < args->n_given && out; i++) {
+        const Given *g = &args->given[i];
+        const char *name = g->option->name, *key = g->option->setting;
+        key = strcmp(name, "--pga") == 0 ? "motion.pga_g" : strcmp(name, "--sa") == 0 ? "motion.sa_g" : key;
+        if (key)
+            text_set(out, "%s=%s", key, g->value);
+        else if (strcmp(name, "--set") == 0)
+            text_set(out, "%s", g->value);
+    }
+    snprintf(id, sizeof id, "%ld", c->id);
+    if (!out || text_close(out) != 0) {
+        fail_memory(why, 1, "a verdict");
+    } else {
+        const char *design = strstr(operand, " --set ") || !c->run ? NULL : c->id > 0 ? id : c->word;
+        verdict_find(s, e, c->x, &(VerdictOf){operand, design, NULL}, &text, why);
+    }
+    free(operand);
+    return text;
+}
+
 static void say_verdict(Document *d, const Args *args, const Chosen *c, const Settings *s, const Evaluations *e)
 {
-    char *text, design[24];
     Err why = {0};
-    if (c->id > 0 && args->n_given == 1) {
-        document_verdict(d, c->run, c->row, NULL);
-        return;
-    }
-    snprintf(design, sizeof design, "%ld", c->id);
-    const Status status = verdict_find(s, e, c->x, args->operand, c->id > 0 ? design : c->word, &text, &why);
-    document_say(d, "h2", "Verdict on design %s", c->id > 0 ? design : c->word);
-    document_say(d, "p", "%s", status == STATUS_OK ? text : why.text);
+    char *text = find_verdict(args, c, s, e, &why);
+    if (c->id > 0)
+        document_say(d, "h2", "Verdict on design %ld", c->id);
+    else
+        document_say(d, "h2", "Verdict on design %s", c->word);
+    document_say(d, "p", "%s", text ? text : why.text);
+    json_put(d->data, "verdict=%s", text);
     free(text);
 }
 

@@ -274,11 +274,19 @@ static Words words_of(const char *name)
     return (Words){name, "", 1};
 }
 
+/* What is neither a measure nor a setting: its words, and the unit that it ends with. */
 static void print_head(FILE *out, const char *name)
 {
-    char head[CELL_MAX];
+    static const char *const UNITS[][2] = {{"_pct", "%"}, {"_m", "m"}, {"_s", "s"}, {"_t", "t"}, {"_g", "g"}};
     const Words w = words_of(name);
+    const int is_raw = w.title == name && !strchr(name, '.');
+    char head[CELL_MAX];
     snprintf(head, sizeof head, *w.unit ? "%s [%s]" : "%s", w.title, w.unit);
+    for (size_t i = 0; i < N_OF(UNITS) && is_raw; i++)
+        if (text_ends(name, UNITS[i][0]))
+            sprintf(head + strlen(name) - strlen(UNITS[i][0]), " [%s]", UNITS[i][1]);
+    for (char *c = head; is_raw && (c = strchr(c, '_'));)
+        *c = ' ';
     print_element(out, "th", head);
 }
 
@@ -316,6 +324,22 @@ static void print_row(FILE *out, json_t *columns, const json_t *row, size_t from
     fputs(is_html ? "</tr>\n<tr>" : "\n", out);
 }
 
+/* Words that are too wide to stand beside the first column stand behind it. */
+static void print_notes(FILE *out, json_t *table, const char *column, int most)
+{
+    size_t r;
+    json_t *row;
+    json_array_foreach(table, r, row)
+    {
+        const char *note = json_string_value(json_object_get(row, column));
+        char first[CELL_MAX], text[2 * CELL_MAX];
+        cell_words("", json_object_iter_value(json_object_iter(row)), 1, first);
+        snprintf(text, sizeof text, "%s: %s", first + strspn(first, " "), note ? note : "");
+        if (note && *note)
+            print_words(out, text, most);
+    }
+}
+
 /* In bands of as many columns as fit beside the first. */
 static void print_table(FILE *out, json_t *table, int most, int is_html)
 {
@@ -324,15 +348,22 @@ static void print_table(FILE *out, json_t *table, int most, int is_html)
     const char *name;
     for (size_t from = 1, to = 0, r; to < n; from = to) {
         size_t i = 0;
-        int used = 0, has_names = 0;
+        const char *first = "";
+        int used = 0, has_names = 0, wide = 0;
         json_object_foreach(columns, name, width)
         {
             used += (i == 0 || i >= from) ? (int)json_integer_value(width) + 2 : 0;
+            first = i == from ? name : first;
+            wide = i == from ? used - 2 > most : wide;
             to = i <= from || used - 2 <= most ? i + 1 : to;
             has_names |= name[strspn(name, " ")] != 0;
             i++;
         }
         fputs(is_html ? "<table>\n<tr>" : from > 1 ? "\n" : "", out);
+        if (wide && *first == ' ') {
+            print_notes(out, table, first, most);
+            continue;
+        }
         if (has_names)
             print_row(out, columns, NULL, from, to, is_html);
         json_array_foreach(table, r, row) print_row(out, columns, row, from, to, is_html);

@@ -255,19 +255,25 @@ json_t *json_review(const FrontReview *r)
     return o;
 }
 
-void document_verdict(Document *d, const Run *run, size_t row, const Settings *used)
+char *stored_verdict(const Run *run, size_t row, const Settings *used, Err *why)
 {
     Settings s = *(used ? used : run->settings);
-    char *verdict = NULL;
-    Err why = {0};
-    if (s.problem.kind != PROBLEM_TOWER)
-        return;
-    Status status = used ? STATUS_OK : record_paths_find(&s, run->provenance, &(RecordPaths){0}, &why);
+    char *text = NULL;
+    Status status = used ? STATUS_OK : record_paths_find(&s, run->provenance, &(RecordPaths){0}, why);
     run_steps(run, row, &s.sim);
-    THEN(status, verdict_of_run(run, row, &s, &verdict, &why));
+    THEN(status, verdict_of_run(run, row, &s, NULL, &text, why));
+    return text;
+}
+
+void document_verdict(Document *d, const Run *run, size_t row, const Settings *used)
+{
+    Err why = {0};
+    if (run->settings->problem.kind != PROBLEM_TOWER)
+        return;
+    char *text = stored_verdict(run, row, used, &why);
     document_say(d, "h2", "Verdict on design %ld", run->table.row[row].id);
-    document_say(d, "p", "%s", status == STATUS_OK ? verdict : why.text);
-    free(verdict);
+    document_say(d, "p", "%s", text ? text : why.text);
+    free(text);
 }
 
 /* ---- warnings ---------------------------------------------------------------------------------------------------- */

@@ -29,7 +29,7 @@ void document_model(Document *d, const json_t *model)
     json_array_foreach(json_object_get(model, "effects"), i, e)
     {
         const char *value = json_text(settings, json_text(e, "setting"));
-        const int is_set = strcmp(json_text(e, "is_set"), "yes") == 0, is_on = strcmp(value, json_text(e, "with")) == 0;
+        const int is_set = strcmp(json_text(e, "is_set"), "yes") == 0, is_on = strcmp(json_text(e, "kept"), "yes") == 0;
         json_t *row = json_put(figures_row(table), "=%s", is_set ? "set" : is_on ? "on" : "off");
         json_put(row, " without=%s", json_text(e, "without"));
         figures_put(row, "J1 %", is_set ? NAN : number(e, "j1_m_pct"), NAN, NAN);
@@ -43,16 +43,15 @@ void document_model(Document *d, const json_t *model)
 /* What to search with, and the designs that need more, by both models. */
 static void say_more(Document *d, const json_t *confirmed, const char *folder)
 {
-    char text[4 * PATH_MAX + 3], setting[PATH_MAX], *sets = NULL;
+    char text[4 * PATH_MAX + 3], *sets = NULL;
     const char *key;
     json_t *value, *one;
     size_t length, i;
     FILE *f = text_open(&sets, &length);
     json_object_foreach(json_object_get(confirmed, "more"), key, value)
     {
-        snprintf(setting, sizeof setting, "%s=%s", key, json_string_value(value));
         if (f)
-            fprintf(f, " --set %s", text_shell(setting, text));
+            text_set(f, "%s=%s", key, json_string_value(value));
     }
     if (f)
         text_close(f);

@@ -98,16 +98,17 @@ static Status take_elsewhere(const Settings *other, const char *record, const do
     return status;
 }
 
-/* A design that fails by the model with all effects has none, and the page says why. */
-static Status take_ladder(const Settings *s, const Scenario *w, const double x[], Detail *d, Err *err)
+/* A design that fails by the model with all effects has none, and the page says why; and the verdict with it. */
+static Status take_ladder(const Settings *s, const double x[], const DetailOptions *options, Detail *d, Err *err)
 {
     if (s->sim.engine != ENGINE_FAST)
         return STATUS_OK;
     TRY_ROOM(d->ladder, 1, "a ladder", err);
-    if (ladder_find(s, x, motion_strong_part(&w->motion, 1 / d->building_hz[0]), 1, d->ladder, &d->no_ladder)) {
+    if (ladder_find(s, x, LADDER_BRIEF, d->ladder, &d->no_ladder)) {
         free(d->ladder);
         d->ladder = NULL;
     }
+    verdict_of_run(options->run, options->row, s, d->ladder, &d->verdict, &(Err){0});
     return STATUS_OK;
 }
 
@@ -135,9 +136,7 @@ Status detail_make(const Settings *s, int n_var, const double x[], const DetailO
     if (status == STATUS_OK) /* last, as it takes longest */
         status = take_here(&p, x, options, out, err);
     if (status == STATUS_OK && options->with_ladder)
-        verdict_of_run(options->run, options->row, s, &out->verdict, &(Err){0});
-    if (status == STATUS_OK && options->with_ladder)
-        status = take_ladder(s, tower_record(tower_of(&p), 0), x, out, err);
+        status = take_ladder(s, x, options, out, err);
     problem_close(&p);
     if (status != STATUS_OK)
         detail_free(out);

@@ -1,12 +1,12 @@
 #include "report/verdict.h"
 
-#include "analysis/ladder.h"
+#include <stdarg.h>
+
 #include "base/figure.h"
 #include "base/json.h"
 #include "base/stat.h"
 #include "base/text.h"
 #include "base/units.h"
-#include "motion/motion_scale.h"
 #include "motion/suite.h"
 #include "settings/settings.h"
 #include "store/folder.h"
@@ -16,12 +16,15 @@ static const double S235_PA = 235e6, OFF_DRAWING = 0.1; /* [-] of J1, from where
 
 typedef struct {
     const Evaluations *e;
+    const VerdictOf *of;
     const double *x;
     FILE *out;                       /* a line for every sentence */
     size_t first;                    /* record that was read */
     double own[LADDER_MEASURES];     /* under it */
     size_t n_links[LADDER_MEASURES]; /* records under which links are the better ones */
-    char set[600];                   /* " --set KEY=VALUE", what a search should have; empty: nothing */
+    double off;                      /* [-] mean of J1 as built over that of the drawing, less 1 */
+    Settings next;                   /* what a search should have */
+    int has_next;                    /* other than the settings at hand */
 } Verdict;
 
 int verdict_compare(double sense, double value, double error, double other)
@@ -44,14 +47,14 @@ static void say_values(const Verdict *v, const double value[], const double sd[]
     }
 }
 
-/* What failed is infinite. */
+/* What failed is infinite. Of one record "1 of 1" says no more than the factor. */
 static void say_others(Verdict *v)
 {
     static const SceneKind OTHERS[] = {SCENE_NO_CORE, SCENE_RIGID, SCENE_LINKS};
+    static const char *const HEADS[LADDER_MEASURES] = {" J1", ", drift", ", J3"};
     const Evaluations *e = v->e;
     for (size_t o = 0; o < N_OF(OTHERS) && evaluated_has(e, &e->run[v->first], OTHERS[o]); o++) {
         fprintf(v->out, "%s %s", o ? "; against" : "Against", SCENES[OTHERS[o]].words);
-
         for (int k = 0; k < LADDER_MEASURES; k++) {
             double ratio[TOWER_RECORDS_MAX];
             size_t n = 0, better = 0;
@@ -65,48 +68,66 @@ static void say_others(Verdict *v)
                 v->n_links[k] += OTHERS[o] == SCENE_LINKS && verdict_compare(1, other, 0, own) > 0;
             }
             sort_values(n, ratio);
-            fprintf(v->out, "%s \u00d7 %.3g (%s%zu of %zu)",
-                    k == 0   ? " J1"
-                    : k == 1 ? ", drift"
-                             : ", J3",
-                    0.5 * (ratio[(n - 1) / 2] + ratio[n / 2]), o + k ? "" : "better under ", better, n);
+            fprintf(v->out, "%s \u00d7 %.3g", HEADS[k], 0.5 * (ratio[(n - 1) / 2] + ratio[n / 2]));
+            if (n > 1)
+                fprintf(v->out, " (%s%zu of %zu)", o + k ? "" : "better under ", better, n);
         }
     }
     fputs(".\n", v->out);
 }
 
+__attribute__((format(printf, 4, 5))) static Status put_next(Verdict *v, Err *err, const char *key, const char *format,
+                                                             ...)
+{
+    char value[2 * OPTION_TEXT_MAX];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(value, sizeof value, format, list);
+    va_end(list);
+    v->has_next = 1;
+    return settings_put(&v->next, key, value, err);
+}
+
+/* Effects that some scene needs and the model leaves out, by the first scene that needs them. */
+static Status say_left_out(Verdict *v, const Ladder *l, Err *err)
+{
+    static const char *const WHO[] = {"the design", "the core rigidly connected", "the building alone", "all together"};
+    for (size_t who = 0; who < N_OF(WHO); who++)
+        for (size_t i = 0, n = 0; i < l->n; i++) {
+            const LadderEffect *e = &l->effect[i];
+            size_t scene = 0;
+            while (scene < LADDER_SCENES && !(ladder_in_tolerances(l, e->change[scene], (int)scene) > 1))
+                scene++;
+            if (!e->is_kept || e->is_set || scene != who)
+                continue;
+            if (n++ == 0)
+                fprintf(v->out, "%s %s: ", v->has_next ? "; by" : "The model leaves out what is needed by", WHO[who]);
+            fprintf(v->out, "%s%s", n > 1 ? ", " : "", e->words);
+            TRY(put_next(v, err, e->key, "%s", e->with));
+        }
+    return STATUS_OK;
+}
+
 /* s: under the first record alone. */
 static Status say_model(Verdict *v, const Settings *s, Err *err)
 {
-    Building b;
-    Motion m;
-    Ladder *l;
-    TRY(building_load(&b, &s->building, err));
-    const double period = 2 * M_PI / b.omega[0];
-    building_free(&b);
-    TRY(tower_motion(&v->e->tower, v->first, &m, err));
-    const double strong_s = motion_strong_part(&m, period);
-    motion_free(&m);
-    TRY_ROOM(l, 1, "a ladder", err);
-    const Status status = ladder_find(s, v->x, strong_s, 1, l, err);
-    for (size_t i = 0; i < l->n && status == STATUS_OK; i++) {
-        const LadderEffect *effect = &l->effect[i];
-        const size_t used = strlen(v->set);
-        if (!effect->is_kept || effect->is_set)
-            continue;
-        fprintf(v->out, "%s%s", used ? ", " : "With ", effect->words);
-        snprintf(v->set + used, sizeof v->set - used, " --set '%s=%s'", effect->key, effect->with);
+    Ladder *found = NULL;
+    const Ladder *l = v->of->ladder;
+    Status status = STATUS_OK;
+    if (!l) {
+        TRY_ROOM(found, 1, "a ladder", err);
+        status = ladder_find(s, v->x, LADDER_BRIEF, found, err);
+        l = found;
     }
-    if (v->set[0]) {
-        fputs(", which it needs and this model leaves out, it has ", v->out);
+    THEN(status, say_left_out(v, l, err));
+    fputs(v->has_next ? ". With these effects it has " : "The model has every effect that the scenes need: ", v->out);
+    if (v->has_next) {
         say_values(v, l->set[0], NULL);
         fputs(" instead of ", v->out);
-    } else {
-        fputs("The model has every effect that it needs: ", v->out);
     }
     say_values(v, v->own, NULL);
     fprintf(v->out, " under %s.\n", evaluated_name(&v->e->record[v->first]));
-    free(l);
+    free(found);
     return status;
 }
 
@@ -126,17 +147,38 @@ static Status say_as_built(Verdict *v, Settings *s, Err *err)
         mean[k] = sum.mean[LADDER_MEASURE[k]];
         sd[k] = sum.sd[LADDER_MEASURE[k]];
     }
-    const double off = mean[0] / v->own[0] - 1;
+    v->off = mean[0] / v->own[0] - 1;
     fprintf(v->out, "As built, with gaps %g mm off (mean ± standard deviation of %d, %zu failed): ",
             1e3 * s->sim.gap_tolerance_m, VERDICT_REPLICATES, sum.n_failed);
     say_values(v, mean, sd);
-    fprintf(v->out, "; J1 is on average %+.0f %% off the drawing.\n", 100 * off);
-    if (!(off <= OFF_DRAWING) && !v->set[0])
-        snprintf(v->set, sizeof v->set, " --set sim.gap_tolerance_m=%g --set sim.replicates=4", s->sim.gap_tolerance_m);
+    fprintf(v->out, "; J1 is on average %+.0f %% off the drawing.\n", 100 * v->off);
     return STATUS_OK;
 }
 
-static void say_limits(Verdict *v, const Settings *s)
+/* A search in which this does not break: demand `factor` times the limit. */
+static Status plan_remedy(Verdict *v, MeasureId id, double limit, double factor, Err *err)
+{
+    static const double STIFFENERS = 0.25, CLAMPED = 1.5; /* [-] G b / 2 over G b / 3, where the mat begins to lift */
+    const char *name = measure(id)->name, *now = v->next.search.limits, *variables = v->next.design.variables;
+    const CoreOptions *core = &v->next.core;
+    char ground[OPTION_TEXT_MAX], anchored[OPTION_TEXT_MAX];
+    if (id == MEASURE_UPLIFT || id == MEASURE_CORE_OVERTURNING) {
+        snprintf(ground, sizeof ground, "soil=C radius=%g", core->width_m);
+        ladder_anchors(strcmp(core->foundation, "fixed") ? core->foundation : ground,
+                       ceil(factor * (id == MEASURE_UPLIFT ? limit : CLAMPED)), anchored);
+        TRY(put_next(v, err, "core.foundation", "%s", anchored));
+        return strstr(variables, "anchors") ? STATUS_OK
+                                            : put_next(v, err, "design.variables", "%s, anchors", variables);
+    }
+    if (id == MEASURE_CORE_BUCKLING && core->stiffeners == 0)
+        TRY(put_next(v, err, "core.stiffeners", "%g", STIFFENERS));
+    if (strstr(now, name))
+        return STATUS_OK;
+    return put_next(v, err, "search.limits", "%s%s%s<=%g", strcmp(now, "none") ? now : "",
+                    strcmp(now, "none") ? ", " : "", name, limit);
+}
+
+static Status say_limits(Verdict *v, const Settings *s, Err *err)
 {
     enum { EXTENSIVE = 2 }; /* DamagePart.median */
     const struct DamagePart *part = DAMAGE_PARTS;
@@ -168,21 +210,48 @@ static void say_limits(Verdict *v, const Settings *s)
             most = all[j].factor > all[most].factor ? j : most;
         if (all[most].factor > 0)
             fprintf(v->out, "%s %s %.3g", i ? "," : ":", all[most].what, all[most].factor);
-        if (all[most].factor > 1 && all[most].id != MEASURE_CORE_OVERTURNING && !v->set[0])
-            snprintf(v->set, sizeof v->set, " --set 'search.limits=%s<=%g'", measure(all[most].id)->name,
-                     all[most].limit);
+        if (all[most].factor > 1)
+            TRY(plan_remedy(v, all[most].id, all[most].limit, all[most].factor, err));
         all[most].factor = 0;
     }
     fputs(".\n", v->out);
+    return STATUS_OK;
 }
 
-Status verdict_find(const Settings *given, const Evaluations *e, const double x[], const char *run, const char *design,
-                    char **out, Err *err)
+static void put_set(const char *key, unsigned flags, const char *was, const char *is, void *out)
 {
-    Verdict v = {.e = e, .x = x};
+    (void)flags;
+    (void)was;
+    text_set(out, "%s=%s", key, is);
+}
+
+/* What nothing before has asked for: gaps that are off, links; else the design is made easier to build. */
+static Status say_next(Verdict *v, const Settings *given, Err *err)
+{
+    if (!v->has_next && !(v->off <= OFF_DRAWING)) {
+        TRY(put_next(v, err, "sim.gap_tolerance_m", "%g", fmax(given->sim.gap_tolerance_m, VERDICT_GAP_M)));
+        TRY(put_next(v, err, "sim.replicates", "4"));
+    }
+    if (!v->has_next && v->n_links[0] + v->n_links[2] > v->e->n_read) {
+        TRY(put_next(v, err, "design.variables", "gaps, thickness, links"));
+        TRY(put_next(v, err, "design.devices", "gap, link, none"));
+    }
+    if (!v->has_next && v->of->design) {
+        fprintf(v->out, "Next: imtet simplify %s --design %s --gap-step 5\n", v->of->operand, v->of->design);
+        return STATUS_OK;
+    }
+    fprintf(v->out, "Next: imtet optimize %s --new", v->of->operand);
+    settings_compare(given, &v->next, put_set, v->out);
+    fputc('\n', v->out);
+    return STATUS_OK;
+}
+
+Status verdict_find(const Settings *given, const Evaluations *e, const double x[], const VerdictOf *of, char **out,
+                    Err *err)
+{
+    Verdict v = {.e = e, .of = of, .x = x, .next = *given};
     Settings s = *given;
     size_t length;
-    char folder[4 * PATH_MAX + 3];
     *out = NULL;
     if (s.sim.engine != ENGINE_FAST)
         return bad_data(err, "sim.engine: a verdict takes the engine fast");
@@ -200,13 +269,8 @@ Status verdict_find(const Settings *given, const Evaluations *e, const double x[
     say_others(&v);
     Status status = say_model(&v, &s, err);
     THEN(status, say_as_built(&v, &s, err));
-    say_limits(&v, &s);
-    if (!v.set[0] && v.n_links[0] + v.n_links[2] > e->n_read)
-        snprintf(v.set, sizeof v.set,
-                 " --set design.variables=gaps,thickness,links --set design.devices=gap,link,none");
-    fprintf(v.out,
-            v.set[0] ? "Next: imtet optimize %s --new%s\n" : "Next: imtet simplify %s --design %s --gap-step 5\n",
-            text_shell(run, folder), v.set[0] ? v.set : design);
+    THEN(status, say_limits(&v, &s, err));
+    THEN(status, say_next(&v, given, err));
     if (text_close(v.out) != 0)
         THEN(status, fail_memory(err, 1, "a verdict"));
     if (status == STATUS_OK)
@@ -221,7 +285,7 @@ static Status add_own(const char *source, void *user, Err *err)
     return evaluations_add(user, source, 1, err);
 }
 
-Status verdict_of_run(const Run *run, size_t row, const Settings *used, char **out, Err *err)
+Status verdict_of_run(const Run *run, size_t row, const Settings *used, const Ladder *ladder, char **out, Err *err)
 {
     Settings s = *used;
     Evaluations e = {.n_levels = 1, .has_links = 1};
@@ -240,7 +304,7 @@ Status verdict_of_run(const Run *run, size_t row, const Settings *used, char **o
         status = suite_of_study(&s.motion, add_own, &e, err);
         THEN(status, evaluations_read(&e, &s, err));
         THEN(status, evaluations_run(&e, run->schema.n_var, run_x(run, row), NULL, err));
-        THEN(status, verdict_find(&s, &e, run_x(run, row), "RUN", id, &text, err));
+        THEN(status, verdict_find(&s, &e, run_x(run, row), &(VerdictOf){"RUN", id, ladder}, &text, err));
         evaluations_free(&e);
         if (status == STATUS_OK)
             json_object_set_new(all, id, json_words(text));

@@ -10,11 +10,14 @@ Status torsion_add(Building *b, const NumberList *eccentricity, Err *err)
     if (share == 0)
         return STATUS_OK;
     const double radius = sqrt((1 + aspect * aspect) / 12); /* over l */
-    if (!(aspect > 0 && share <= 0.5 * aspect && eccentricity->n <= 2))
+    if (eccentricity->n > 2)
         return bad_data(err,
-                        "contact.eccentricity: %g, %g; contacts are on a floor that is so many times as long across "
-                        "the motion as along it: at most half of that off the centre",
-                        share, aspect);
+                        "contact.eccentricity: %d numbers; give the share of the side along the motion, and behind "
+                        "it at most the side across over that one",
+                        eccentricity->n);
+    if (!(share <= 0.5 * aspect))
+        return bad_data(err, "contact.eccentricity: %g is more than %g, half of the side across the motion", share,
+                        0.5 * aspect);
     const BuildingModel from = b->model;
     const int n = from.n;
     BuildingModel *m = &b->model;

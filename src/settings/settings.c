@@ -428,15 +428,17 @@ static Status assign_choice(Settings *s, const Option *o, const char *value, Err
     double number = 0;
     const int is_switch = strcmp(o->words, CHOICE_WORDS(SWITCH_LIST)) == 0; /* as TOML writes it */
     int i = is_switch ? word_index("off|on|false|true|no|yes", value) % 2 : word_index(o->words, value);
-    if (i < 0 && !(o->number && strchr("0123456789.", value[0]))) {
-        char copy[512], *rest = copy;
+    if (i < 0 && !(o->number && strchr("-0123456789.", value[0]))) {
+        char copy[512], *rest = copy, range[64] = "";
         const char *list[WORDS_MAX];
         int n = 0;
         snprintf(copy, sizeof copy, "%s", o->words);
         for (char *word; n < WORDS_MAX && (word = strsep(&rest, "|"));)
             list[n++] = word;
         const char *near = nearest_word(value, list, n);
-        return bad_data(err, "%s: '%.60s' is not one of %s%s%s%s", o->key, value, o->words,
+        if (o->number)
+            snprintf(range, sizeof range, ", or a number from %g to %g", o->min, o->max);
+        return bad_data(err, "%s: '%.60s' is not one of %s%s%s%s%s", o->key, value, o->words, range,
                         near ? "; did you mean " : "", near ? near : "", near ? "?" : "");
     }
     if (i < 0) {

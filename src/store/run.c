@@ -67,9 +67,11 @@ int run_is_unpredictable(const Run *run, size_t row)
 void run_steps(const Run *run, size_t row, SimOptions *sim)
 {
     const SimOptions *set = &run->settings->sim;
+    if (sim->accuracy != set->accuracy || sim->tolerance != set->tolerance)
+        return;
+    sim->steps_per_contact = 0; /* asked twice they are the same */
     for (long i = 0; i < run->table.row[row].level; i++)
-        if (sim->accuracy == set->accuracy && sim->tolerance == set->tolerance)
-            estimate_options(sim, sim);
+        estimate_options(sim, sim);
 }
 
 size_t run_find(const Run *run, long id)

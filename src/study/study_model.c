@@ -69,7 +69,7 @@ static void read_ladder(const json_t *model, Ladder *l)
         snprintf(e->with, sizeof e->with, "%s", json_text(row, "with"));
         snprintf(e->without, sizeof e->without, "%s", json_text(row, "otherwise"));
         e->is_set = strcmp(json_text(row, "is_set"), "yes") == 0;
-        e->is_kept = strcmp(json_text(json_object_get(model, "settings"), e->key), e->with) == 0;
+        e->is_kept = strcmp(json_text(row, "kept"), "yes") == 0;
         e->most = json_is_number(most) ? json_number_value(most) : INFINITY;
         l->n++;
     }

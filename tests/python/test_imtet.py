@@ -551,8 +551,11 @@ class Simulating(unittest.TestCase):
             run.simulate("knee")
         with self.assertRaisesRegex(FileNotFoundError, "no run is there"):
             imtet.open_run(PLACE)
-        with self.assertRaisesRegex(FileNotFoundError, "nowhere: there is no such folder"):
-            imtet.open_run(os.path.join(PLACE, "nowhere"))
+        said = json.loads(program("evaluate", out, "--design", "knee", "--json"))["verdict"]
+        self.assertEqual(run.verdict(int(run.knee.id)), said)
+        self.assertIn("Against no core", said)
+        with self.assertRaisesRegex(KeyError, f"imtet report {out} --design 100000"):
+            run.verdict(100000)
 
     def test_a_run_that_is_not_what_was_written_is_refused_as_the_program_does(self):
         whole, other = os.path.join(PLACE, "whole"), os.path.join(PLACE, "other")
