@@ -292,8 +292,8 @@ TEST(a_preset_has_the_box_of_its_building_and_what_options_say_comes_before_it)
     assert_close(s.core.width_m, 3.1, 1e-12);
     assert_true(s.design.link_n_s_m.at[0] == 1.5e5 && s.design.link_n_s_m.at[1] == 1.5e7);
     assert_true(s.design.gap_zones == 5 && s.design.link_zones == 5 && s.design.device_zones == 5);
-    assert_same_number(s.motion.pga_g, 0);
-    assert_int_equal(s.search.max_evals, 300);
+    assert_string_equal(s.core.foundation, "soil=C radius=3.1 anchors=100");
+    assert_true(s.core.stiffeners == 0.25 && s.motion.pga_g == 0 && s.search.max_evals == 300);
     expect_output(": no fault", "check @/devices/study.ini --pga 9");
     free(output_of(
         "new @/stops --preset stops --set building.model=@/six --set core.width_m=4 --set design.gap_m=0.01,0.2"));

@@ -419,7 +419,7 @@ static Status climb(Choosing *c, const double x[], Err *err)
     Err why = {0};
     c->most = SIZE_MAX;
     c->n_structures = STRUCTURES;
-    c->n_each = c->n_copies = c->form == LADDER_WHOLE ? STRUCTURES : 1;
+    c->n_each = c->n_copies = c->form == LADDER_WHOLE ? COPIES : 1;
     TRY(take_record(c->s.motion.record, c, err));
     TRY(open_effects(c, err));
     TRY_ROOM(c->at, 1, "designs", err);

@@ -61,18 +61,20 @@ const Command CMD_SETTINGS = {
 static const struct {
     const char *name, *settings[10];
 } PRESETS[] = {
-    {"stops", {"search.objectives=j1_m, drift_ratio, j3_filtered_g, mcore_kg", "search.max_evals=300"}},
+    {"stops",
+     {"design.variables=gaps, thickness, anchors", "search.objectives=j1_m, drift_ratio, j3_filtered_g, cost",
+      "search.max_evals=300"}},
     {"devices",
-     {"design.variables=gaps, thickness, links", "design.devices=gap, link, none",
+     {"design.variables=gaps, thickness, anchors, links", "design.devices=gap, link, none",
       "search.objectives=j1_m, drift_ratio, j3_filtered_g, cost", "search.max_evals=300"}},
     {"engineer",
-     {"design.variables=gaps, thickness, links", "design.devices=gap, link, none", "sim.forces=yes",
+     {"design.variables=gaps, thickness, anchors, links", "design.devices=gap, link, none", "sim.forces=yes",
       "search.objectives=j1_m, drift_ratio, j3_filtered_g, cost", "search.max_evals=600",
       "search.limits=drift_ratio<=0.02, core_stress_pa<=3.45e8, core_buckling_ratio<=1, contact_force_max_n<=6.5e6"}},
     {"risk",
-     {"motion.records=builtin:suite", "sim.robust=mean", "search.fidelity=records",
-      "search.objectives=loss, j1_m, drift_ratio, mcore_kg", "search.limits=p(drift_ratio>0.02)<=0.1",
-      "search.max_evals=300"}},
+     {"design.variables=gaps, thickness, anchors", "motion.records=builtin:suite", "sim.robust=mean",
+      "search.fidelity=records", "search.objectives=loss, j1_m, drift_ratio, cost",
+      "search.limits=p(drift_ratio>0.02)<=0.1", "search.max_evals=300"}},
     {"paper",
      {"sim.model=given", "core.theory=euler_bernoulli", "motion.pga_g=0.3", "motion.stretch=3.1",
       "search.max_evals=1500", "search.stop_after=1000"}},
@@ -106,12 +108,13 @@ __attribute__((format(printf, 4, 5))) static Status put_unless_given(const Args 
 }
 
 /* The search box by the building: gaps of up to 0.6 % of its height, which is what a building of steel sways by; a core
- * as slender as that of the paper's tower; links of 3 to 300 % of the dashpot per floor that would damp the first mode
- * critically, were the building rigid; and five zones of floors at most. */
+ * as slender as that of the paper's tower, with stiffeners, for bare walls would buckle, on a mat twice as wide on
+ * ground of class C, with anchors, for its weight alone would let it lift; links of 3 to 300 % of the dashpot per floor
+ * that would damp the first mode critically, were the building rigid; and five zones of floors at most. */
 static Status fit_building(const Args *args, Settings *s, Err *err)
 {
     static const double SWAY = 0.006, SLENDERNESS = 7, LEAST = 0.03, MOST = 3;
-    enum { ZONES = 5 };
+    enum { ZONES = 5, ANCHORS_MAX = 100 };
     Building b;
     double height = 0;
     TRY(building_load(&b, &s->building, err));
@@ -122,6 +125,8 @@ static Status fit_building(const Args *args, Settings *s, Err *err)
     building_free(&b);
     TRY(put_unless_given(args, s, "design.gap_m", "0.001, %.2g", SWAY * height));
     TRY(put_unless_given(args, s, "core.width_m", "%.2g", height / SLENDERNESS));
+    TRY(put_unless_given(args, s, "core.stiffeners", "0.25"));
+    TRY(put_unless_given(args, s, "core.foundation", "soil=C radius=%g anchors=%d", s->core.width_m, ANCHORS_MAX));
     if (!strstr(s->design.variables, "links"))
         return STATUS_OK;
     TRY(put_unless_given(args, s, "design.link_n_s_m", "%.2g, %.2g", LEAST * per_floor, MOST * per_floor));

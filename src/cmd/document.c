@@ -274,19 +274,11 @@ static Words words_of(const char *name)
     return (Words){name, "", 1};
 }
 
-/* What is neither a measure nor a setting: its words, and the unit that it ends with. */
 static void print_head(FILE *out, const char *name)
 {
-    static const char *const UNITS[][2] = {{"_pct", "%"}, {"_m", "m"}, {"_s", "s"}, {"_t", "t"}, {"_g", "g"}};
-    const Words w = words_of(name);
-    const int is_raw = w.title == name && !strchr(name, '.');
     char head[CELL_MAX];
+    const Words w = words_of(name);
     snprintf(head, sizeof head, *w.unit ? "%s [%s]" : "%s", w.title, w.unit);
-    for (size_t i = 0; i < N_OF(UNITS) && is_raw; i++)
-        if (text_ends(name, UNITS[i][0]))
-            sprintf(head + strlen(name) - strlen(UNITS[i][0]), " [%s]", UNITS[i][1]);
-    for (char *c = head; is_raw && (c = strchr(c, '_'));)
-        *c = ' ';
     print_element(out, "th", head);
 }
 

@@ -98,15 +98,17 @@ static void say_building(Dossier *o)
         THEN(status, frame_read(&frame, &s->building, &e));
     THEN(status, building_drawing(&b, has_frame ? &frame : NULL, 8, &drawn, &e));
     if (status == STATUS_OK) {
-        document_list(&o->doc,
-                      json_of("floors=%d mass_of_the_building_t=%g first_period_of_the_building_s=%g damping_pct=%g "
-                              "mass_of_the_core_t=%g first_period_of_the_core_s=%g damping_of_the_core_pct=%g "
-                              "side_of_the_core_m=%g restitution=%g radius_of_a_contact_m=%g peak_of_the_ground_g=%g "
-                              "length_of_the_motion_s=%g model=%s foundation_of_the_core=%s ground_motion=%s",
-                              b.n, 1e-3 * building_mass(&b), 1 / d->building_hz[0], 100 * b.zeta[0],
-                              1e-3 * d->result[SCENE_IMPACT].mcore_kg, 1 / d->core_hz[0], 100 * s->core.damping,
-                              s->core.width_m, s->contact.restitution, s->contact.radius_m, d->pga_g, d->duration_s,
-                              s->building.model, s->core.foundation, o->record));
+        document_list(
+            &o->doc,
+            json_of("floors=%d mass of the building [t]=%g first period of the building [s]=%g damping ratio=%g "
+                    "mass of the core [t]=%g first period of the core [s]=%g damping ratio of the core=%g "
+                    "side of the core [m]=%g restitution=%g radius of a contact [m]=%g "
+                    "peak of the ground motion [g]=%g length of the motion [s]=%g model of the building=%s "
+                    "foundation of the core=%s ground motion=%s",
+                    b.n, 1e-3 * building_mass(&b), 1 / d->building_hz[0], b.zeta[0],
+                    1e-3 * d->result[SCENE_IMPACT].mcore_kg, 1 / d->core_hz[0], s->core.damping, s->core.width_m,
+                    s->contact.restitution, s->contact.radius_m, d->pga_g, d->duration_s, s->building.model,
+                    s->core.foundation, o->record));
         json_object_set_new(o->drawings, "panels", drawn);
         document_draw(&o->doc, "panels",
                       "The building to scale; its first mode shapes with period and share of the mass.");

@@ -18,13 +18,13 @@ typedef struct {
     const Evaluations *e;
     const VerdictOf *of;
     const double *x;
-    FILE *out;                       /* a line for every sentence */
-    size_t first;                    /* record that was read */
-    double own[LADDER_MEASURES];     /* under it */
-    size_t n_links[LADDER_MEASURES]; /* records under which links are the better ones */
-    double off;                      /* [-] mean of J1 as built over that of the drawing, less 1 */
-    Settings next;                   /* what a search should have */
-    int has_next;                    /* other than the settings at hand */
+    FILE *out;                   /* a line for every sentence */
+    size_t first;                /* record that was read */
+    double own[LADDER_MEASURES]; /* under it */
+    size_t n_links;              /* records under which links are better in J1, and in J3 */
+    double off;                  /* [-] mean of J1 as built over that of the drawing, less 1 */
+    Settings next;               /* what a search should have */
+    int has_next;                /* other than the settings at hand */
 } Verdict;
 
 int verdict_compare(double sense, double value, double error, double other)
@@ -65,7 +65,7 @@ static void say_others(Verdict *v)
                     continue;
                 ratio[n++] = own / other;
                 better += verdict_compare(1, own, 0, other) > 0;
-                v->n_links[k] += OTHERS[o] == SCENE_LINKS && verdict_compare(1, other, 0, own) > 0;
+                v->n_links += k != 1 && OTHERS[o] == SCENE_LINKS && verdict_compare(1, other, 0, own) > 0;
             }
             sort_values(n, ratio);
             fprintf(v->out, "%s \u00d7 %.3g", HEADS[k], 0.5 * (ratio[(n - 1) / 2] + ratio[n / 2]));
@@ -232,7 +232,7 @@ static Status say_next(Verdict *v, const Settings *given, Err *err)
         TRY(put_next(v, err, "sim.gap_tolerance_m", "%g", fmax(given->sim.gap_tolerance_m, VERDICT_GAP_M)));
         TRY(put_next(v, err, "sim.replicates", "4"));
     }
-    if (!v->has_next && v->n_links[0] + v->n_links[2] > v->e->n_read) {
+    if (!v->has_next && v->n_links > v->e->n_read) {
         TRY(put_next(v, err, "design.variables", "gaps, thickness, links"));
         TRY(put_next(v, err, "design.devices", "gap, link, none"));
     }
