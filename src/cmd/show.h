@@ -67,7 +67,7 @@ void figures_baselines(json_t *table, const Schema *schema, const Baseline basel
  * whose gap closes in none of the designs that were simulated again, if there are any. */
 json_t *json_review(const FrontReview *r);
 
-/* Verdict on a design of a run of the tower (report/verdict.h), to be freed; NULL: `why` tells. used: the settings of the
+/* Verdict on a design of a run of the tower (report/verdict.h), to be freed; NULL: why tells. used: the settings of the
  * run, its records where they are now; NULL: those of the run. */
 char *stored_verdict(const Run *run, size_t row, const Settings *used, Err *why);
 void document_verdict(Document *d, const Run *run, size_t row, const Settings *used); /* nothing without a tower */
