@@ -227,7 +227,7 @@ class Run(Copied, Tabular):
         """What a design of a tower comes to, a sentence a line, where a command has judged it: the end of the study its knee."""
         try:
             with open(os.path.join(self.path, "verdicts.json")) as file:
-                text = str(json.load(file)[str(number)])
+                text: str = json.load(file)[f"{number}"]
         except (OSError, KeyError):
             raise KeyError(f"no verdict is stored: `imtet report {self.path} --design {number}` finds it") from None
         return text.replace(" RUN ", f" {shlex.quote(self.path)} ")
