@@ -328,7 +328,7 @@ static void print_notes(FILE *out, json_t *table, const char *column, int most)
         cell_words("", json_object_iter_value(json_object_iter(row)), 1, first);
         snprintf(text, sizeof text, "%s: %s", first + strspn(first, " "), note ? note : "");
         if (note && *note)
-            print_words(out, text, most);
+            print_words(out, text, 0, most);
     }
 }
 
