@@ -250,11 +250,16 @@ static void end_state(const FastWork *work, double state[])
 /* Of the solver with friction: with less what sticks chatters, and steps become short. */
 static const double FRICTION_TOLERANCE = 1e-4;
 
+/* Of steps, below `fine`, of a core whose mat may lift: with 1 the promise holds in 55 of 59 scenes, with 2 in all. */
+static const double LIFTING_STEPS = 2;
+
 /* At ACCURACY_FINE the other tolerances are at rounding: EngineOptions.tolerance sets the steps alone. */
-static FastTolerances tolerances_of(const EngineOptions *options)
+static FastTolerances tolerances_of(const EngineOptions *options, int lifts)
 {
     FastTolerances tolerances = fast_tolerances(options->accuracy);
     double times = options->refinement > 0 ? options->refinement : 1;
+    if (lifts && options->accuracy != ACCURACY_FINE)
+        times *= LIFTING_STEPS;
     if (options->steps_per_contact > 0)
         times *= options->steps_per_contact / tolerances.steps_per_contact;
     if (options->tolerance > 0 && options->accuracy != ACCURACY_FINE)
@@ -273,8 +278,9 @@ Status engine_fast(const SimModel *model, const Motion *motion, const EngineOpti
         TRY(fast_create(&own, model->n, model->nb, model->yields, model->n_devices, err));
     if (!work)
         work = own;
-    FastTolerances tolerances = tolerances_of(options);
-    for (int e = 0; e < model->n_devices; e++)
+    const int n = model->n_devices, lifts = n > 0 && model->device[n - 1].floor < 0;
+    FastTolerances tolerances = tolerances_of(options, lifts);
+    for (int e = 0; e < n; e++)
         if (model->device[e].exponent == 0)
             tolerances.solver_tolerance = fmin(tolerances.solver_tolerance, FRICTION_TOLERANCE);
     fast_run(work, model, motion, options, &tolerances, result);
