@@ -188,7 +188,7 @@ static inline void write_in_place(const char *name, const char *text)
 }
 
 /* Storeys of a building in the folder @/name: lines of height, mass and stiffness. */
-static inline void write_building(const char *name, const char *rows)
+static inline void write_storeys_in_place(const char *name, const char *rows)
 {
     char file[64], text[400];
     char *folder = in_place(name);

@@ -29,8 +29,8 @@ TEST(two_single_masses_exchange_the_momentum_of_one_impact)
     for (int i = 0; i < 401; i++)
         f[i] = force;
     const Motion motion = {.accel = accel, .force = f, .n_force = 1, .n = 401, .dt_s = 0.01};
-    write_building("one", "4,2e5,2e6\n");
-    write_building("other", "4,3e5,1e6\n");
+    write_storeys_in_place("one", "4,2e5,2e6\n");
+    write_storeys_in_place("other", "4,3e5,1e6\n");
     for (Engine engine = 0; engine < ENGINE_COUNT; engine++) {
         SceneOptions o = pair_of("one", "other", engine);
         o.contact.law = LAW_EXACT;
@@ -52,8 +52,8 @@ TEST(joined_and_alone_the_masses_have_their_closed_forms)
     Scene *scene;
     SceneModes modes;
     double gap = 0.1;
-    write_building("one", "4,2e5,2e6\n");
-    write_building("other", "4.2,3e5,1e6\n"); /* 0.2 m higher: within the thickness of a slab */
+    write_storeys_in_place("one", "4,2e5,2e6\n");
+    write_storeys_in_place("other", "4.2,3e5,1e6\n"); /* 0.2 m higher: within the thickness of a slab */
     const SceneOptions o = pair_of("one", "other", ENGINE_FAST);
     CHECK_OK(scene_create(&scene, &o, NULL, &err), &err);
     assert_int_equal(scene_design(scene)->n_var, 1);
@@ -70,9 +70,9 @@ TEST(three_floors_meet_three_floors_and_none_above_a_lower_neighbour)
     const double x[] = {0.004, 0.009, 0.012};
     Motion motion;
     CHECK_OK(motion_load(&motion, "builtin:elcentro-like", UNIT_FROM_FILE, &err), &err);
-    write_building("three", "4,2e5,2e8\n3.5,2e5,1.6e8\n3.5,1.5e5,1.1e8\n");
-    write_building("stiff", "4,2.2e5,9e8\n3.5,2.1e5,7e8\n3.5,1.6e5,5e8\n");
-    write_building("low", "4,2.2e5,9e8\n");
+    write_storeys_in_place("three", "4,2e5,2e8\n3.5,2e5,1.6e8\n3.5,1.5e5,1.1e8\n");
+    write_storeys_in_place("stiff", "4,2.2e5,9e8\n3.5,2.1e5,7e8\n3.5,1.6e5,5e8\n");
+    write_storeys_in_place("low", "4,2.2e5,9e8\n");
     for (int i = 0; i < 2; i++) {
         SceneOptions o = pair_of("three", i ? "low" : "stiff", ENGINE_FAST);
         o.building.damping = LIST_OF(0.05);
@@ -153,8 +153,8 @@ TEST(a_neighbour_out_of_reach_is_not_felt)
 
 TEST(a_neighbour_that_does_not_fit_is_refused_in_words)
 {
-    write_building("tall", "4,2e5,2e8\n3.5,2e5,1.6e8\n3.5,1.5e5,1.1e8\n3.5,1.5e5,1.1e8\n");
-    write_building("shifted", "4,2e5,2e8\n4.2,2e5,1.6e8\n");
+    write_storeys_in_place("tall", "4,2e5,2e8\n3.5,2e5,1.6e8\n3.5,1.5e5,1.1e8\n3.5,1.5e5,1.1e8\n");
+    write_storeys_in_place("shifted", "4,2e5,2e8\n4.2,2e5,1.6e8\n");
     expect(65, "has 4 floors, the building 3: make the taller one building.model", CHECK_PAIR "tall");
     expect(65, "is at 8.2 m, that of the building at 7.5 m; floors that meet are at one height within 0.3 m",
            CHECK_PAIR "shifted");

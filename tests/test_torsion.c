@@ -19,7 +19,7 @@ static SceneOptions three_floors(const char *name, double less, double share)
     char rows[200];
     snprintf(rows, sizeof rows, "4,%.17g,%.17g\n3.5,%.17g,%.17g\n3.5,%.17g,%.17g\n", 2e5 / less, 2e8 / less, 2e5 / less,
              1.6e8 / less, 1.5e5 / less, 1.1e8 / less);
-    write_building(name, rows);
+    write_storeys_in_place(name, rows);
     SceneOptions o = scene_defaults();
     char *folder = in_place(name);
     snprintf(o.building.model, sizeof o.building.model, "%s", folder);
@@ -54,8 +54,8 @@ TEST(an_impact_off_the_centre_has_the_effective_mass_of_a_free_body)
     for (int i = 0; i < 401; i++)
         f[i] = force;
     const Motion motion = {.accel = accel, .force = f, .n_force = 1, .n = 401, .dt_s = 0.01};
-    write_building("one", "4,2e5,2e6\n");
-    write_building("other", "4,3e5,1e6\n");
+    write_storeys_in_place("one", "4,2e5,2e6\n");
+    write_storeys_in_place("other", "4,3e5,1e6\n");
     for (Engine engine = 0; engine < ENGINE_COUNT; engine++) {
         SceneOptions o = three_floors("three", 1, share);
         stand_beside(&o, in_place("one"), in_place("other"));
