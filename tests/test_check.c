@@ -142,7 +142,7 @@ TEST(simulate_and_optimize_say_what_check_finds_implausible)
             COMMANDS[i]);
         assert_int_equal(s.code, 0);
         assert_int_equal(times(s.err, "warning: building.model: the first period"), 1);
-        assert_int_equal(times(s.err, "warning: motion.records: builtin:sylmar-like is there twice"), 1);
+        assert_int_equal(times(s.err, "warning: motion.records: builtin:sylmar-like appears twice"), 1);
         if (i == 0) {
             assert_int_equal(times(s.err, "mm.csv:2: gap_05_m is 50 m and does not close; gaps are in metres"), 1);
             json_t *o = json_loads(s.out, 0, &why);

@@ -441,7 +441,7 @@ static void climb(Check *c, const CheckedScene *p)
         json_put(o, "design=%p", ladder_design(p));
         json_put(c->out, "ladder=%p", o);
     }
-    if (p->impacts == 0 && !strstr(p->s->design.variables, "links"))
+    if (p->impacts == 0 && !strstr(p->s->design.variables, "links") && !strstr(p->s->design.variables, "friction"))
         warn("--ladder",
              "no gap closes in any of the designs that were tried, so that the needs of core and contacts are "
              "unknown; take narrower gaps (design.gap_m), or a --design that collides",

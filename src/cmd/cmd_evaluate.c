@@ -341,7 +341,7 @@ static Status run_and_give(const Args *args, Settings *s, Chosen *c, Evaluations
     if (e->level && s->sim.replicates > 1 && args_gives(args, "sim.replicates"))
         return misused(err, "sim.replicates = %ld is ignored: every intensity is simulated once", s->sim.replicates);
     e->replicates = !e->level && s->sim.replicates > 1 ? s->sim.replicates : 0;
-    if (has_verdict(args, e))
+    if (!e->level) /* for the verdict; CSV has the numbers of JSON */
         s->sim.forces = FORCES_YES;
     /* 2. Every record is read before anything is simulated. */
     TRY(add_records(args, e, s, c->run, err));

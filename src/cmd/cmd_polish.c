@@ -83,8 +83,9 @@ static void say_all(Document *d, const Improve *m)
         const Column *c = schema_objective(&m->run.schema, k);
         const double gain = c->sense * (before->f[k] - end->f[k]);
         const double error = hypot(before->sd[k], end->sd[k]) / sqrt((double)m->config.replicates);
-        char known[60];
-        snprintf(known, sizeof known, isfinite(error) ? " with a standard error of %.2g" : "", error);
+        char known[60] = "";
+        if (isfinite(error))
+            snprintf(known, sizeof known, " with a standard error of %.2g", error);
         if (m->config.weight[k] > 0.0)
             document_say(d, "p", "%s is %s by %.3g%s", c->name, gain < 0.0 ? "worse" : "better", fabs(gain), known);
     }

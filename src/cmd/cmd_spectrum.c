@@ -264,7 +264,7 @@ static Status run(const Args *args, Err *err)
     const size_t n = all.n_max = all.n;
     if (n > 1 && args_has(args, "--history"))
         return misused(err, "--history takes one motion, not %zu", n);
-    all.s = calloc(n, sizeof *all.s);
+    all.s = calloc(n + 1, sizeof *all.s);
     Status status = all.s ? each_operand(args, &all, err) : fail_memory(err, n, "motions");
     THEN(status, give(args, n, all.s, err));
     for (size_t k = 0; all.s && k < n; k++)

@@ -195,7 +195,9 @@ static void say_run(Document *d, const char *folder, const Run *run, const Stand
     if (s->n_lost > 0)
         document_say(d, "p", "its file `lock` says that %zu more evaluations were stored: run.sqlite-wal is missing",
                      s->n_lost);
-    snprintf(more, sizeof more, isfinite(e.busy) ? "; threads %.1f %% busy" : "", 100.0 * e.busy);
+    *more = '\0';
+    if (isfinite(e.busy))
+        snprintf(more, sizeof more, "; threads %.1f %% busy", 100.0 * e.busy);
     if (isfinite(e.waiting))
         document_say(d, "p", "wall time: %.1f %% waiting for simulations, %.1f %% surrogate, %.1f %% search%s",
                      100.0 * e.waiting, 100.0 * e.surrogate, 100.0 * e.search, more);

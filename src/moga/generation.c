@@ -20,8 +20,6 @@ size_t generation_samples(const Search *s)
     return given < initial / 2 ? initial - given : initial - initial / 2;
 }
 
-/* -- step 5: evaluation: what is asked, and the answers, the only way into the archive ----------------------------- */
-
 /* -- step 6: environmental selection ------------------------------------------------------------------------------- */
 
 /* Next population: from the members of the present one, as the archive has them now (a replicate may have changed one,
@@ -131,7 +129,7 @@ static Status choose(Search *s, Err *err)
     Common *c = &s->common;
     Batch *b = &s->batch;
     measure_front(s);
-    TRY(screening_last(&s->screening, c, b, err));
+    TRY(screening_last(&s->screening, c, b, 0, err));
     if (b->n > 0 || b->room == 0 || c->config->surrogate == SURROGATE_OFF)
         surrogate_drop(s->surrogate);
     else
@@ -148,6 +146,8 @@ static Status choose(Search *s, Err *err)
     while (b->n == 0 && w.with_surrogate--);
     if (b->n == 0)
         sample_again(s);
+    if (b->n == 0 && c->pending.n == 0 && s->n_vain >= VAIN_MAX)
+        return screening_last(&s->screening, c, b, 1, err);
     replication_add(c, &s->criteria, b);
     return screening_finish(&s->screening, c, b, err);
 }

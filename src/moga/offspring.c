@@ -111,7 +111,7 @@ static void add_descended(Offspring *o, const Breeding *w)
 
     /* 1. The next vectors: all of them in turn, each time in another order, so that those of designs under way are not
      * dealt once more. */
-    for (size_t i = 0; i < n; i++, o->n_dealt++) {
+    for (size_t i = 0; i < n && n_vectors > 0; i++, o->n_dealt++) {
         const size_t at = o->n_dealt % n_vectors;
         if (i == 0 || at == 0) {
             Random order = random_stream(c->config->seed, RANDOM_DESCENT, (uint32_t)(o->n_dealt / n_vectors), 1);

@@ -406,9 +406,9 @@ Status screening_finish(Screening *q, Common *c, Batch *b, Err *err)
     return STATUS_OK;
 }
 
-Status screening_last(Screening *q, Common *c, Batch *b, Err *err)
+Status screening_last(Screening *q, Common *c, Batch *b, int is_exhausted, Err *err)
 {
-    if (q->n == 0 || !q->is_on || b->room > 0)
+    if (q->n == 0 || !q->is_on || (b->room > 0 && !is_exhausted))
         return STATUS_OK;
     return append_best(q, c, b, size_with(q, c, b, batch_size(c)), err);
 }

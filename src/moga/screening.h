@@ -52,6 +52,7 @@ Status screening_update(Screening *q, Common *c, Err *err); /* after results: pr
 void screening_exchange(Screening *q, Archive *a); /* predictions in the archive for what was evaluated, and back */
 const void *screening_parts(const Screening *q, const Common *c, const double x[]); /* of the cheap level; NULL: none */
 
-/* Screened designs to be finished, beside what is in the batch; where there is room for them alone, a batch of them. */
+/* Screened designs to be finished, beside what is in the batch. */
 Status screening_finish(Screening *q, Common *c, Batch *b, Err *err);
-Status screening_last(Screening *q, Common *c, Batch *b, Err *err);
+/* A batch of them where no evaluation of a new design is left, or no new design. */
+Status screening_last(Screening *q, Common *c, Batch *b, int is_exhausted, Err *err);

@@ -103,7 +103,10 @@ static Status say_left_out(Verdict *v, const Ladder *l, Err *err)
             if (n++ == 0)
                 fprintf(v->out, "%s %s: ", v->has_next ? "; by" : "The model leaves out what is needed by", WHO[who]);
             fprintf(v->out, "%s%s", n > 1 ? ", " : "", e->words);
-            TRY(put_next(v, err, e->key, "%s", e->with));
+            const LadderEffect *more =
+                e + 1; /* the mat that lifts goes further than the ground: of one key it stands */
+            if (i + 1 == l->n || strcmp(more->key, e->key) != 0 || !more->is_kept || more->is_set)
+                TRY(put_next(v, err, e->key, "%s", e->with));
         }
     return STATUS_OK;
 }
@@ -172,8 +175,9 @@ static Status plan_remedy(Verdict *v, MeasureId id, double limit, double factor,
     }
     if (id == MEASURE_CORE_BUCKLING && core->stiffeners == 0)
         TRY(put_next(v, err, "core.stiffeners", "%g", STIFFENERS));
-    if (strstr(now, name))
-        return STATUS_OK;
+    for (const char *at = now; (at = strstr(at, name)); at++) /* not as a part of another name, nor in a chance */
+        if ((at == now || strchr(", ", at[-1])) && strchr("<> =", at[strlen(name)]))
+            return STATUS_OK;
     return put_next(v, err, "search.limits", "%s%s%s<=%g", strcmp(now, "none") ? now : "",
                     strcmp(now, "none") ? ", " : "", name, limit);
 }

@@ -65,9 +65,8 @@ static Status fail_at_line(const char *path, int file, int how, Err *err)
 static Status take_frame(Frame *f, FILE *in, Err *err)
 {
     char kind[8];
-    int n = 0;
     Status status = STATUS_OK;
-    while (status == STATUS_OK && (n = fscanf(in, "%7s", kind)) == 1) {
+    while (status == STATUS_OK && fscanf(in, "%7s", kind) == 1) {
         FrameNode node = {0};
         FrameElement e = {0};
         FrameSection s = {.E = 1};

@@ -119,6 +119,12 @@ static Status try_kept(Improver *m, Err *err)
     for (size_t j = 0; j < m->problem->n_var; j++)
         if (!(x[j] >= m->problem->lower[j] && x[j] <= m->problem->upper[j]))
             return bad_data(err, "%s: %g is outside of its bounds", schema_variable(&m->run->schema, j)->name, x[j]);
+    double built[DESIGN_VARIABLES_MAX];
+    memcpy(built, x, m->problem->n_var * sizeof *x);
+    problem_repair(m->problem, built);
+    if (memcmp(built, x, m->problem->n_var * sizeof *x) != 0)
+        return bad_data(
+            err, "cannot be built so: steps, stock plates, whole choices, and no core that is thicker at its top");
     TRY(improver_note(m, 1, &x, 0, err));
     return improver_check(m, err);
 }

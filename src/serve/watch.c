@@ -169,11 +169,15 @@ Status watch_move(Watch *w, size_t i, const char *name, Err *err)
         return bad_data(err, "%s: is served alone: rename or remove it from the folder that holds it", r->name);
     if (name && (!name[0] || name[0] == '.' || strchr(name, '/')))
         return bad_data(err, "'%.80s' is no name of a folder", name);
+    TRY(run_wanted(r->folder, err)); /* before the lock, which would make a folder that has gone */
     TRY(folder_take(&held, r->folder, 0, err));
     folder_path(w->folder, name ? name : "", place);
-    r->is_gone = (name ? renameat2(AT_FDCWD, r->folder, AT_FDCWD, place, RENAME_NOREPLACE)
-                       : nftw(r->folder, remove_one, 8, FTW_DEPTH | FTW_PHYS)) == 0;
-    Status status = r->is_gone ? STATUS_OK : fail_errno(err, name ? place : r->folder, "cannot be made or removed");
+    Status status = run_wanted(r->folder, err);
+    if (status == STATUS_OK && (name ? renameat2(AT_FDCWD, r->folder, AT_FDCWD, place, RENAME_NOREPLACE)
+                                     : nftw(r->folder, remove_one, 8, FTW_DEPTH | FTW_PHYS)) != 0)
+        status = fail_errno(err, name ? place : r->folder, "cannot be made or removed");
+    if (status == STATUS_OK)
+        r->is_gone = 1;
     folder_release(&held);
     return status;
 }

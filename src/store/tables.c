@@ -186,7 +186,12 @@ Status tables_have_room(const Schema *s, Err *err)
                         "%zu objectives (SQLite: %d columns)",
                         s->n_var, COLUMNS_MAX - others, s->n_obj, COLUMNS_MAX);
     TRY(tables_text(s, &text, err));
-    if (sqlite3_open(":memory:", &db) != SQLITE_OK || sqlite3_exec(db, text, NULL, NULL, NULL) != SQLITE_OK)
+    int code = sqlite3_open(":memory:", &db);
+    if (code == SQLITE_OK)
+        code = sqlite3_exec(db, text, NULL, NULL, NULL);
+    if (code == SQLITE_NOMEM)
+        status = fail_memory(err, 1, "the names of the columns");
+    else if (code != SQLITE_OK)
         status = bad_data(err,
                           "problem.variable_names: or problem.objective_names: %s; a run has columns of its own (id, "
                           "kind, g_1 ...), and E is e there",

@@ -36,7 +36,7 @@ function engineThread() {
       ground = wanted.join();
     }
     if (histories) return must(engine.engine_histories(page)) && JSON.parse(said());
-    if (whole && record) ground = undefined; // it ends with the first record
+    if (whole) ground = undefined; // it ends with the first record, or fails anywhere
     return { ...simulate(0, whole), no_core: noCore };
   }
 

@@ -1,8 +1,7 @@
 // What if: sliders for every variable, the motion and the restitution; each change is one simulation by the page itself. One question is
 // under way at a time; what was moved meanwhile is the next one, what was passed over is never asked.
 const GROUND = [["pga_g", "peak", "g"], ["stretch", "time \u00d7", ""], ["restitution", "restitution", ""]];
-let startWhatIf; // once the page can simulate
-let storeKept; // of imtet serve
+let startWhatIf, storeKept; // once the page can simulate; of imtet serve
 
 function whatIfPart() {
   const part = laterPart("what-if", "What if", "growth");
@@ -168,10 +167,10 @@ function whatIfPart() {
     list.replaceChildren(...kept.map((one, i) => element("li", `${objectives.slice(0, 3).map((c, k) => `${c.title} ${withUnit(c, one.raw[k] * c.factor)}`).join(", ")} (${[one.name, groundWords(one.ground), one.why].filter(Boolean).join(", ")}) `,
       compareButton(one), " ", plainButton("Take up again", () => set(one.x, one.ground)), " ", one.id ? "" : plainButton("Drop", () => {
         kept.splice(i, 1);
-        takeOverlay(one.name);
-        overlaysChanged(showKept());
+        takeOverlay(one.name), overlaysChanged(showKept());
       }))));
-    command.hidden = save.disabled = saveAll.disabled = !kept.length;
+    save.disabled = saveAll.disabled = !kept.length;
+    command.hidden = !kept.length || kept.some(({ ground }) => groundWords(ground)); // it simulates the run's motion
     command.textContent = `imtet simulate ${run.folder}/settings.ini --design ${run.name}-kept.csv${kept.every(({ ground }) => ground.whole) ? "" : bounds.options}`;
   }
 
