@@ -69,7 +69,7 @@ TEST(a_lost_journal_is_noticed)
 {
     killed_run("lost");
     shell_in_place("mv lost/run.sqlite-wal kept && cp -r lost other");
-    expect_output("more evaluations were stored: the journal", "status @/lost");
+    expect_output("more evaluations were stored: run.sqlite-wal", "status @/lost");
     expect(74, "evaluations were stored, as its file `lock` says; run.sqlite has", "optimize @/lost");
     shell_in_place("mv kept lost/run.sqlite-wal");
     free(output_of("optimize @/lost"));
