@@ -84,7 +84,7 @@ TEST(designs_that_are_asked_together_have_the_answers_of_those_asked_one_by_one)
     for (int i = 0; i < 2; i++) {
         snprintf(text, sizeof text,
                  "[problem]\nkind = external\ncommand = python3 tests/batch_worker.py %s %s/sizes-%s\nvariables = 2\n"
-                 "objectives = 2\ntimeout_s = 2\n[search]\ninitial = 40\npopulation = 20\nmax_evals = 120\n"
+                 "objectives = 2\ntimeout_s = 4\n[search]\ninitial = 40\npopulation = 20\nmax_evals = 120\n"
                  "threads = %d\nfailures_max = 0\n",
                  HOW[i], place.folder, HOW[i], 1 + i);
         write_in_place("batch.ini", text);
