@@ -340,7 +340,7 @@ static Status try_case(Choosing *c, size_t record, const double *x, Err *why, Er
     }
     TRY(tower_open_scenes(&p, &s, 1, &(const char *){c->record[record]}, 1 + l->n, scene, err));
     TRY(run_tasks(c, &p, n, task, err));
-    take_copies(&k->all, MIN_OF(c->n_structures, c->n_each)); /* as many as of each: their times are compared */
+    take_copies(&k->all, c->n_copies); /* as many as of the set: their times are compared */
     for (size_t i = 0; i < l->n; i++)
         if (is_asked(c, k, i, SCENE_IMPACT))
             take_copies(&without[i], c->n_each);

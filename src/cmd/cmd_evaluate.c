@@ -161,7 +161,7 @@ static void say_refused(Document *d, const Evaluations *e)
             document_say(d, "p", "not read: %s", e->record[i].why.text);
 }
 
-/* At one intensity: it takes forces, which a table in a file would have then too. */
+/* At one intensity, but where a table for a file is all that is asked for. */
 static int has_verdict(const Args *args, const Evaluations *e)
 {
     return !e->level && !args_has(args, "--csv");

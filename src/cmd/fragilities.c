@@ -88,7 +88,7 @@ Status fragilities_read(Fragilities *f, const Schema *schema, const char *list, 
 }
 
 /* Each row an intensity; the column that is named otherwise is that. */
-static Status take_counts(Fragilities *f, const Table *t, Err *err)
+static Status counts_of_table(Fragilities *f, const Table *t, Err *err)
 {
     const int exceeded = table_column(t, "exceeded"), of = table_column(t, "of"), at = 3 - exceeded - of;
     if (exceeded < 0 || of < 0 || t->n_cols != 3 || t->n_rows < 2 || t->n_rows > IDA_LEVELS_MAX)
@@ -116,7 +116,7 @@ Status counts_read(Fragilities *f, const char *path, const char *hazard, Err *er
 {
     Table t;
     TRY(table_read(&t, path, TABLE_HEADED, err));
-    Status status = take_counts(f, &t, err);
+    Status status = counts_of_table(f, &t, err);
     table_free(&t);
     THEN(status, read_hazard(f, hazard, f->intensity, err));
     f->counted = path;

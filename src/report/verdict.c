@@ -92,6 +92,7 @@ __attribute__((format(printf, 4, 5))) static Status put_next(Verdict *v, Err *er
 static Status say_left_out(Verdict *v, const Ladder *l, Err *err)
 {
     static const char *const WHO[] = {"the design", "the core rigidly connected", "the building alone", "all together"};
+    size_t n_said = 0;
     for (size_t who = 0; who < N_OF(WHO); who++)
         for (size_t i = 0, n = 0; i < l->n; i++) {
             const LadderEffect *e = &l->effect[i];
@@ -101,13 +102,12 @@ static Status say_left_out(Verdict *v, const Ladder *l, Err *err)
             if (!e->is_kept || e->is_set || scene != who)
                 continue;
             if (n++ == 0)
-                fprintf(v->out, "%s %s: ", v->has_next ? "; by" : "The model leaves out what is needed by", WHO[who]);
+                fprintf(v->out, "%s %s: ", n_said++ ? "; by" : "The model leaves out what is needed by", WHO[who]);
             fprintf(v->out, "%s%s", n > 1 ? ", " : "", e->words);
-            const LadderEffect *more =
-                e + 1; /* the mat that lifts goes further than the ground: of one key it stands */
-            if (i + 1 == l->n || strcmp(more->key, e->key) != 0 || !more->is_kept || more->is_set)
-                TRY(put_next(v, err, e->key, "%s", e->with));
         }
+    for (size_t i = 0; i < l->n; i++) /* in the order of the effects: a mat that lifts is behind its ground */
+        if (l->effect[i].is_kept && !l->effect[i].is_set)
+            TRY(put_next(v, err, l->effect[i].key, "%s", l->effect[i].with));
     return STATUS_OK;
 }
 

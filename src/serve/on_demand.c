@@ -119,7 +119,7 @@ static Status try_kept(Improver *m, Err *err)
     for (size_t j = 0; j < m->problem->n_var; j++)
         if (!(x[j] >= m->problem->lower[j] && x[j] <= m->problem->upper[j]))
             return bad_data(err, "%s: %g is outside of its bounds", schema_variable(&m->run->schema, j)->name, x[j]);
-    double built[DESIGN_VARIABLES_MAX];
+    double built[DESIGN_VARIABLES_MAX]; /* of a tower */
     memcpy(built, x, m->problem->n_var * sizeof *x);
     problem_repair(m->problem, built);
     if (memcmp(built, x, m->problem->n_var * sizeof *x) != 0)
@@ -137,8 +137,9 @@ Status on_demand_keep(OnDemand *o, const Run *run, size_t n, double x[], long *i
     RunStore *store;
     if (run->n_front == 0)
         return run_why_empty(run, err);
-    if (n != run->schema.n_var)
-        return bad_data(err, "a design of %s has %zu variables", run->folder, run->schema.n_var);
+    if (n != run->schema.n_var || s.problem.kind != PROBLEM_TOWER)
+        return bad_data(err, "a design to keep is of a tower; one of %s has %zu variables", run->folder,
+                        run->schema.n_var);
     for (size_t i = 0; i < run->table.n; i++)
         if (memcmp(run_x(run, i), x, n * sizeof *x) == 0) {
             *id = run->table.row[i].id;

@@ -264,7 +264,7 @@ static Status take_note(Visit *v, Answer *a, Err *err)
 }
 
 /* A design that was kept of what-if: its id in the run. */
-static Status take_kept(Visit *v, Answer *a, Err *err)
+static Status keep_design(Visit *v, Answer *a, Err *err)
 {
     const Snapshot *snapshot = v->view.snapshot;
     json_t *given = json_loadb(v->request->body, v->request->n, JSON_REJECT_DUPLICATES, NULL);
@@ -423,7 +423,7 @@ static const Route ROUTES[] = {{"", 0, 0, show_newest, NULL},
                                {"design", 1, 1, show_design, NULL},
                                {"scene", 1, 0, show_scene, NULL},
                                {"notes", 1, 0, show_notes, take_note},
-                               {"kept", 1, 0, NULL, take_kept},
+                               {"kept", 1, 0, NULL, keep_design},
                                {"move", 1, 0, NULL, move_run},
                                {"against", 1, PATH_NUMBERS, show_against, NULL}};
 

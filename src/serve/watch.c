@@ -176,8 +176,7 @@ Status watch_move(Watch *w, size_t i, const char *name, Err *err)
     if (status == STATUS_OK && (name ? renameat2(AT_FDCWD, r->folder, AT_FDCWD, place, RENAME_NOREPLACE)
                                      : nftw(r->folder, remove_one, 8, FTW_DEPTH | FTW_PHYS)) != 0)
         status = fail_errno(err, name ? place : r->folder, "cannot be made or removed");
-    if (status == STATUS_OK)
-        r->is_gone = 1;
+    r->is_gone |= status == STATUS_OK;
     folder_release(&held);
     return status;
 }
