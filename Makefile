@@ -29,7 +29,7 @@ CFLAGS.fuzz     := -O1 -g -fsanitize=fuzzer-no-link,address,undefined $(SANITIZE
 CFLAGS.coverage := -O1 -g --coverage -fprofile-update=single
 
 CC       ?= cc
-WARNINGS := -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion -Wstrict-prototypes -Wmissing-prototypes -Wvla -Werror
+WARNINGS := -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion -Wstrict-prototypes -Wmissing-prototypes -Wvla $(if $(findstring clang,$(CC)),-Wno-c2x-extensions) -Werror
 CPPFLAGS += -Isrc -Iinclude -isystem /usr/include/tcl8.6 -MMD -MP -D_GNU_SOURCE
 # Contraction to fused multiply-add rounds once instead of twice; NaN and Inf stay what they are.
 # Hidden: a function of ours never takes the place of one of the same name inside a shared library.

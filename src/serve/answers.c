@@ -85,9 +85,8 @@ static Status growth_in(const Run *run, const double lower[], const double refer
 }
 
 /* Of a search the problem makes the front: what else differs, such as its length, changes only how much is known. */
-static void name_difference(const char *key, unsigned flags, const char *was, const char *is, void *user)
+static void name_difference(const char *key, unsigned, const char *, const char *, void *user)
 {
-    (void)flags, (void)was, (void)is;
     if (strncmp(key, "search.", 7) != 0 && strncmp(key, "run.", 4) != 0)
         json_object_set_new(user, key, json_true());
 }

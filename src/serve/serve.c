@@ -59,8 +59,9 @@ typedef struct {
 typedef struct {
     Server *server;
     const Request *request;
-    size_t run; /* of the path, if it has one; */
-    View view;  /* as it is now */
+    size_t run;          /* of the path, if it has one; */
+    View view;           /* as it is now */
+    const json_t *given; /* the body; NULL: it is no JSON */
 } Visit;
 
 /* -- connections --------------------------------------------------------------------------------------------------- */
@@ -87,16 +88,13 @@ static void set_waiting(Server *s, int fd, int waits)
     pthread_mutex_unlock(&s->mutex);
 }
 
-static void note_connection(void *user, struct MHD_Connection *c, void **context,
-                            enum MHD_ConnectionNotificationCode what)
+static void note_connection(void *user, struct MHD_Connection *c, void **, enum MHD_ConnectionNotificationCode what)
 {
-    (void)context;
     set_waiting(user, socket_of(c), what == MHD_CONNECTION_NOTIFY_STARTED);
 }
 
-static void note_completed(void *user, struct MHD_Connection *c, void **request, enum MHD_RequestTerminationCode why)
+static void note_completed(void *user, struct MHD_Connection *c, void **request, enum MHD_RequestTerminationCode)
 {
-    (void)why;
     free(*request);
     *request = NULL;
     set_waiting(user, socket_of(c), 1);
@@ -145,12 +143,12 @@ static enum MHD_Result send_answer(struct MHD_Connection *c, Answer *a)
     return sent;
 }
 
+static const char JSON_TYPE[] = "application/json", PAGE_TYPE[] = "text/html; charset=utf-8";
+
 /* Takes the reference. */
-static Status answer_json(json_t *all, int precision, Answer *a)
+static Status answer_json(json_t *all, Answer *a)
 {
-    *a = (Answer){.code = MHD_HTTP_OK,
-                  .type = "application/json",
-                  .text = json_dumps(all, JSON_COMPACT | JSON_REAL_PRECISION(precision))};
+    a->text = json_dumps(all, JSON_COMPACT | JSON_REAL_PRECISION(6));
     json_decref(all);
     return STATUS_OK;
 }
@@ -165,15 +163,15 @@ static const char REFUSED[] =
 static Answer refusal(struct MHD_Connection *c, unsigned code, const char *words)
 {
     const char *wanted = MHD_lookup_connection_value(c, MHD_HEADER_KIND, MHD_HTTP_HEADER_ACCEPT);
-    Answer a = {.code = code, .type = "text/html; charset=utf-8"};
+    Answer a = {.code = code, .type = PAGE_TYPE};
     char said[sizeof(Err)];
     snprintf(said, sizeof said, "%s", words);
     for (char *p = said; (p = strpbrk(p, "<&")); *p = ' ') /* of a path, say */
         ;
     if (wanted && strstr(wanted, "text/html") && asprintf(&a.text, REFUSED, code, code, said) > 0)
         return a;
-    answer_json(json_of("error=%s", words), 6, &a);
-    a.code = code;
+    a.type = JSON_TYPE;
+    answer_json(json_of("error=%s", words), &a);
     return a;
 }
 
@@ -196,7 +194,7 @@ static Status show_page(Visit *v, Answer *a, Err *err)
 {
     const Snapshot *snapshot = v->view.snapshot;
     Err why = {0};
-    *a = (Answer){.code = MHD_HTTP_OK, .type = "text/html; charset=utf-8"};
+    a->type = PAGE_TYPE;
     if (snapshot->run.n_front > 0)
         return report_live(&snapshot->run, &a->text, err);
     const int is_over = snapshot->standing.state == RUN_FINISHED && run_why_empty(&snapshot->run, &why) == STATUS_UNMET;
@@ -206,10 +204,9 @@ static Status show_page(Visit *v, Answer *a, Err *err)
                : fail_memory(err, 1, "a page");
 }
 
-static Status show_front(Visit *v, Answer *a, Err *err)
+static Status show_front(Visit *v, Answer *a, Err *)
 {
-    (void)err;
-    return answer_json(answer_front(v->view.snapshot), 6, a);
+    return answer_json(answer_front(v->view.snapshot), a);
 }
 
 /* Which variables move which objectives. */
@@ -218,21 +215,19 @@ static Status show_importance(Visit *v, Answer *a, Err *err)
     const Run *run = &v->view.snapshot->run;
     Importance m = {0};
     TRY(importance_of(run, &m, err));
-    const Status status = answer_json(importance_json(&m, &run->schema), 6, a);
+    const Status status = answer_json(importance_json(&m, &run->schema), a);
     importance_free(&m);
     return status;
 }
 
 static Status show_design(Visit *v, Answer *a, Err *err)
 {
-    *a = (Answer){.code = MHD_HTTP_OK, .type = "application/json"};
     return on_demand_design(v->view.snapshot->on_demand, &v->view.snapshot->run, v->request->path.number[0], &a->text,
                             err);
 }
 
 static Status show_scene(Visit *v, Answer *a, Err *err)
 {
-    *a = (Answer){.code = MHD_HTTP_OK, .type = "application/json"};
     return on_demand_scene(v->view.snapshot->on_demand, &v->view.snapshot->run, &a->text, err);
 }
 
@@ -240,16 +235,15 @@ static Status show_notes(Visit *v, Answer *a, Err *err)
 {
     json_t *notes;
     TRY(notes_read(v->view.snapshot->run.folder, &notes, err));
-    return answer_json(notes, 6, a);
+    return answer_json(notes, a);
 }
 
 /* Of a design of the run, 0: of the run; what is noted then is the answer. */
 static Status take_note(Visit *v, Answer *a, Err *err)
 {
     const Run *run = &v->view.snapshot->run;
-    json_t *given = json_loadb(v->request->body, v->request->n, JSON_REJECT_DUPLICATES, NULL);
-    const json_t *id = json_object_get(given, "id");
-    const char *text = json_string_value(json_object_get(given, "text"));
+    const json_t *id = json_object_get(v->given, "id");
+    const char *text = json_string_value(json_object_get(v->given, "text"));
     Status status = STATUS_OK;
     if (!json_is_integer(id) || !text)
         status = bad_data(err, "a note is {\"id\": number, \"text\": words}");
@@ -258,7 +252,6 @@ static Status take_note(Visit *v, Answer *a, Err *err)
     pthread_mutex_lock(&v->server->notes);
     THEN(status, notes_put(run->folder, json_integer_value(id), text, err));
     pthread_mutex_unlock(&v->server->notes);
-    json_decref(given);
     TRY(status);
     return show_notes(v, a, err);
 }
@@ -267,16 +260,14 @@ static Status take_note(Visit *v, Answer *a, Err *err)
 static Status keep_design(Visit *v, Answer *a, Err *err)
 {
     const Snapshot *snapshot = v->view.snapshot;
-    json_t *given = json_loadb(v->request->body, v->request->n, JSON_REJECT_DUPLICATES, NULL);
-    const json_t *x = json_object_get(given, "x");
+    const json_t *x = json_object_get(v->given, "x");
     const size_t n = json_array_size(x);
     double values[DESIGN_VARIABLES_MAX];
     long id = 0;
     for (size_t j = 0; j < n && j < DESIGN_VARIABLES_MAX; j++)
         values[j] = json_number_value(json_array_get(x, j));
-    json_decref(given);
     TRY(on_demand_keep(snapshot->on_demand, &snapshot->run, n, values, &id, err));
-    return answer_json(json_of("id=%ld", id), 6, a);
+    return answer_json(json_of("id=%ld", id), a);
 }
 
 /* The fronts of this run and the others that the path names, in one box. */
@@ -299,15 +290,14 @@ static Status show_against(Visit *v, Answer *a, Err *err)
     for (size_t i = 0; i < path->n_numbers; i++)
         watch_give(&other[i]);
     TRY(status);
-    return answer_json(all, 6, a);
+    return answer_json(all, a);
 }
 
 /* -- all runs ------------------------------------------------------------------------------------------------------ */
 
 /* Every run, unreadable ones with the reason. */
-static Status show_runs(Visit *v, Answer *a, Err *err)
+static Status show_runs(Visit *v, Answer *a, Err *)
 {
-    (void)err;
     Watch *w = v->server->watch;
     json_t *list = json_array();
     watch_find(w);
@@ -326,29 +316,25 @@ static Status show_runs(Visit *v, Answer *a, Err *err)
         watch_give(&view);
         json_array_append_new(list, one);
     }
-    return answer_json(list, 6, a);
+    return answer_json(list, a);
 }
 
 /* Another name for the run, or none: then it is removed. */
 static Status move_run(Visit *v, Answer *a, Err *err)
 {
-    json_t *given = json_loadb(v->request->body, v->request->n, JSON_REJECT_DUPLICATES, NULL);
-    const json_t *name = json_object_get(given, "name");
-    Status status = json_is_string(name) || json_is_null(name)
-                        ? watch_move(v->server->watch, v->run, json_string_value(name), err)
-                        : bad_data(err, "wanted is {\"name\": words}, or null to remove the run");
-    json_decref(given);
-    TRY(status);
+    const json_t *name = json_object_get(v->given, "name");
+    TRY(json_is_string(name) || json_is_null(name)
+            ? watch_move(v->server->watch, v->run, json_string_value(name), err)
+            : bad_data(err, "wanted is {\"name\": words}, or null to remove the run"));
     return show_runs(v, a, err);
 }
 
 /* The run whose last session began last. */
-static Status show_newest(Visit *v, Answer *a, Err *err)
+static Status show_newest(Visit *v, Answer *a, Err *)
 {
     Watch *w = v->server->watch;
     size_t newest = 0;
     char number[24], latest[24] = "";
-    (void)err;
     for (size_t i = 0; i < watch_n(w); i++) {
         View view;
         if (watch_take(w, i, GLANCE_S, &view, &(Err){0}) != STATUS_OK)
@@ -375,11 +361,10 @@ struct Stream {
 };
 
 /* The next event, or a comment that keeps the connection alive, in one piece: an event that has no room is left out. */
-static ssize_t read_events(void *user, uint64_t position, char *out, size_t room)
+static ssize_t read_events(void *user, uint64_t, char *out, size_t room)
 {
     Stream *e = user;
     Watch *w = e->server->watch;
-    (void)position;
     View view = watch_next(w, e->run, e->seen, BEAT_S);
     if (!view.snapshot && watch_is_stopped(w))
         return MHD_CONTENT_READER_END_OF_STREAM;
@@ -399,7 +384,8 @@ static Status show_events(Visit *v, Answer *a, Err *err)
     Stream *e;
     TRY_ROOM(e, 1, "events", err);
     *e = (Stream){.server = v->server, .run = v->run};
-    *a = (Answer){.code = MHD_HTTP_OK, .type = "text/event-stream", .stream = e};
+    a->type = "text/event-stream";
+    a->stream = e;
     return STATUS_OK;
 }
 
@@ -432,8 +418,9 @@ static enum MHD_Result respond(Server *s, struct MHD_Connection *c, const char *
 {
     const Route *route = r->route;
     const ShowFn show = strcmp(method, "POST") == 0 ? route->post : route->get;
-    Visit v = {.server = s, .request = r, .run = route->has_run ? r->path.run : 0};
-    Answer a = {0};
+    json_t *given = json_loadb(r->body, r->n, JSON_REJECT_DUPLICATES, NULL);
+    Visit v = {.server = s, .request = r, .run = route->has_run ? r->path.run : 0, .given = given};
+    Answer a = {.code = MHD_HTTP_OK, .type = JSON_TYPE};
     Err err = {0};
     set_waiting(s, socket_of(c), 0);
     Status status = STATUS_OK;
@@ -443,6 +430,7 @@ static enum MHD_Result respond(Server *s, struct MHD_Connection *c, const char *
         status = watch_take(s->watch, v.run, PAGE_S, &v.view, &err);
     THEN(status, show(&v, &a, &err));
     watch_give(&v.view);
+    json_decref(given);
     if (status != STATUS_OK)
         a = refusal(c,
                     status == STATUS_MISSING    ? MHD_HTTP_NOT_FOUND
@@ -483,12 +471,11 @@ static void judge(const Server *s, struct MHD_Connection *c, const char *url, co
 }
 
 /* Called when the headers are there, for every piece of the body, and at its end. */
-static enum MHD_Result handle(void *user, struct MHD_Connection *c, const char *url, const char *method,
-                              const char *version, const char *piece, size_t *n_piece, void **request)
+static enum MHD_Result handle(void *user, struct MHD_Connection *c, const char *url, const char *method, const char *,
+                              const char *piece, size_t *n_piece, void **request)
 {
     Server *s = user;
     Request *r = *request;
-    (void)version;
     Answer a = {0};
     if (!r) {
         r = *request = calloc(1, sizeof *r);
@@ -522,10 +509,8 @@ __attribute__((format(printf, 2, 0))) static void say_nothing(void *user, const 
 }
 
 /* Nothing of a path is unescaped: none that we know has a %. */
-static size_t leave_escaped(void *user, struct MHD_Connection *c, char *text)
+static size_t leave_escaped(void *, struct MHD_Connection *, char *text)
 {
-    (void)user;
-    (void)c;
     return strlen(text);
 }
 

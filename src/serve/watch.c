@@ -154,9 +154,8 @@ const char *watch_name(Watch *w, size_t i)
 }
 
 /* Files of a folder, then the folder. */
-static int remove_one(const char *path, const struct stat *about, int kind, struct FTW *place)
+static int remove_one(const char *path, const struct stat *, int, struct FTW *)
 {
-    (void)about, (void)kind, (void)place;
     return remove(path);
 }
 
