@@ -38,16 +38,6 @@ static Status store_polish(const Polishing *w, size_t row, size_t n_before, cons
     return store_polished(w->store, better, n_before + 1, w->p->n_simulated, &(long){0}, err);
 }
 
-/* Designs at a time. Where other processes simulate, they open one simulator at a time. */
-static size_t side_by_side(const Settings *s, size_t n)
-{
-    size_t n_ranks;
-    const size_t most = MIN_OF(n, threads_wanted(s->search.threads));
-    const int elsewhere =
-        cluster_executor(&n_ranks) || s->run.isolate == SWITCH_ON || s->problem.kind == PROBLEM_EXTERNAL;
-    return elsewhere || most < 2 || linalg_room(most, &(Err){0}) != STATUS_OK ? 1 : most;
-}
-
 /* The n chosen designs but those tried before; the workers are shared out, and what comes out is stored in the order of
  * the designs. */
 static Status polish_chosen(const Polishing *w, const Run *run, size_t n_wanted, const ImproveConfig *config, Err *err)
@@ -55,12 +45,17 @@ static Status polish_chosen(const Polishing *w, const Run *run, size_t n_wanted,
     size_t rows[DESIGNS_MAX];
     const size_t n = run_spread_out(run, n_wanted, 0, rows);
     const size_t first = run->polished_at == (long)w->p->n_simulated ? run->tried_to_polish : 0;
-    const size_t n_threads = first < n ? side_by_side(w->p->used, n - first) : 1;
+    const Settings *s = w->p->used;
+    const size_t threads = threads_wanted(s->search.threads), most = first < n ? MIN_OF(n - first, threads) : 1;
+    size_t n_ranks;
+    const int elsewhere = /* other processes open one simulator at a time */
+        cluster_executor(&n_ranks) || s->run.isolate == SWITCH_ON || s->problem.kind == PROBLEM_EXTERNAL;
+    const size_t n_threads = elsewhere || most < 2 || linalg_room(most, &(Err){0}) != STATUS_OK ? 1 : most;
     Settings settings = *run->settings;
     Run own = *run;
     Status all = STATUS_OK;
     own.settings = &settings;
-    settings.search.threads = threads_wanted(w->p->used->search.threads) / n_threads;
+    settings.search.threads = threads / n_threads;
 #pragma omp parallel for ordered schedule(dynamic, 1) num_threads((int)n_threads)
     for (size_t i = first; i < n; i++) {
         Improved polished;

@@ -25,13 +25,12 @@ __attribute__((format(printf, 2, 3))) static void list(Listed *l, const char *fo
 }
 
 /* Lists a setting that makes another problem; files are compared by content. */
-static void list_difference(const char *key, unsigned flags, const char *was, const char *is, void *user)
+static void list_difference(const char *key, unsigned, const char *was, const char *is, void *user)
 {
     static const char *const OTHERS[] = {"run.",          "problem.command", "problem.timeout_s", "sim.threads",
                                          "motion.record", "motion.forces",   "building.model"};
     int is_of_problem =
         strncmp(key, "search.", 7) != 0 || strcmp(key, "search.objectives") == 0 || strcmp(key, "search.limits") == 0;
-    (void)flags;
     for (size_t i = 0; i < N_OF(OTHERS); i++)
         is_of_problem &= strncmp(key, OTHERS[i], strlen(OTHERS[i])) != 0;
     if (is_of_problem)

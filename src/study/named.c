@@ -63,22 +63,6 @@ static void add(Work *w, size_t row)
         w->named[w->n++] = (Named){.row = row};
 }
 
-/* The first ones whose error is not known yet. */
-static void find(Work *w)
-{
-    const Run *run = &w->run;
-    size_t rows[NAMED_SPREAD];
-    w->n = 0;
-    if (run->n_front == 0 || run->finer.n >= NAMED_MAX)
-        return;
-    add(w, run_knee(run));
-    for (size_t k = 0; k < run->schema.n_obj; k++)
-        add(w, run_best(run, k));
-    const size_t n = run_spread_out(run, NAMED_SPREAD, 1, rows);
-    for (size_t i = 0; i < n; i++)
-        add(w, rows[i]);
-}
-
 /* -- simulations --------------------------------------------------------------------------------------------------- */
 
 static int may_go_on(void *work)
@@ -184,37 +168,16 @@ static Status take(const Work *w, Named *d, Err *err)
 
 /* -- all of it ----------------------------------------------------------------------------------------------------- */
 
-static Evaluation record_of(const Work *w, Named *d)
-{
-    const Schema *s = &w->run.schema;
-    const int is_predictable = d->is_known && is_within(s, 1.0, d->value, d->sd);
-    for (size_t k = 0; k < s->n_obj + s->n_extra; k++) {
-        const double apart = d->student * d->sd[k];
-        d->error[k] = isnan(d->error[k]) || isnan(apart) ? fmax(d->error[k], apart) : hypot(d->error[k], apart);
-        if (d->error[k] < LEAST * promised(s, k, d->value[k]))
-            d->error[k] = LEAST * promised(s, k, d->value[k]);
-    }
-    return (Evaluation){.id = w->run.table.row[d->row].id,
-                        .kind = KIND_UNFINISHED,
-                        .level = d->level,
-                        .reason = is_predictable ? "" : "unpredictable",
-                        .seconds = d->seconds,
-                        .violation = d->violation,
-                        .f = d->value,
-                        .sd = d->sd,
-                        .extra = d->value + s->n_obj,
-                        .err = d->error};
-}
-
 /* The designs of a round, side by side, wave by wave. */
 static Status know(Work *w, Err *err)
 {
     const Schema *s = &w->run.schema;
+    const size_t n_values = s->n_obj + s->n_extra;
     Evaluation better[TOGETHER];
     for (size_t i = 0; i < w->n; i++) {
         const Evaluation *e = &w->run.table.row[w->named[i].row];
         w->named[i].violation = e->violation;
-        for (size_t k = 0; k < s->n_obj + s->n_extra; k++) {
+        for (size_t k = 0; k < n_values; k++) {
             w->named[i].as_set[k] = w->named[i].value[k] = answer(e, s, k);
             w->named[i].error[k] = NAN;
         }
@@ -225,8 +188,26 @@ static Status know(Work *w, Err *err)
         for (size_t i = 0; i < w->n; i++)
             TRY(ask_next(w, &w->named[i], err));
     } while (queue_pending(w->queue) > 0);
-    for (size_t i = 0; i < w->n; i++)
-        better[i] = record_of(w, &w->named[i]);
+    for (size_t i = 0; i < w->n; i++) {
+        Named *d = &w->named[i];
+        const int is_predictable = d->is_known && is_within(s, 1.0, d->value, d->sd);
+        for (size_t k = 0; k < n_values; k++) {
+            const double apart = d->student * d->sd[k], least = LEAST * promised(s, k, d->value[k]);
+            d->error[k] = isnan(d->error[k]) || isnan(apart) ? fmax(d->error[k], apart) : hypot(d->error[k], apart);
+            if (d->error[k] < least)
+                d->error[k] = least;
+        }
+        better[i] = (Evaluation){.id = w->run.table.row[d->row].id,
+                                 .kind = KIND_UNFINISHED,
+                                 .level = d->level,
+                                 .reason = is_predictable ? "" : "unpredictable",
+                                 .seconds = d->seconds,
+                                 .violation = d->violation,
+                                 .f = d->value,
+                                 .sd = d->sd,
+                                 .extra = d->value + s->n_obj,
+                                 .err = d->error};
+    }
     return store_finer(w->store, w->n, better, err);
 }
 
@@ -245,7 +226,19 @@ Status named_simulate(RunStore *store, const Settings *used, const Problem *prob
         status = store_read(w->store, &w->run, err);
         if (status != STATUS_OK)
             break;
-        find(w);
+
+        /* The first designs whose error is not known yet. */
+        size_t rows[NAMED_SPREAD];
+        const Run *run = &w->run;
+        const int has_more = run->n_front > 0 && run->finer.n < NAMED_MAX;
+        const size_t n_spread = has_more ? run_spread_out(run, NAMED_SPREAD, 1, rows) : 0;
+        w->n = 0;
+        if (has_more)
+            add(w, run_knee(run));
+        for (size_t k = 0; has_more && k < run->schema.n_obj; k++)
+            add(w, run_best(run, k));
+        for (size_t i = 0; i < n_spread; i++)
+            add(w, rows[i]);
         status = w->n > 0 ? know(w, err) : STATUS_OK;
         run_free(&w->run);
         w->is_first = 0;

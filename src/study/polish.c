@@ -43,19 +43,15 @@ static int simulate(Descent *d, const double u[])
     return d->is_known && d->status == STATUS_OK && m->ok[0];
 }
 
-static double objective(unsigned n, const double u[], double gradient[], void *user)
+static double objective(unsigned, const double u[], double[], void *user)
 {
-    (void)n;
-    (void)gradient;
     const Improver *m = ((Descent *)user)->m;
     return simulate(user, u) ? fmin(improver_sum(m, m->F) - improver_sum(m, m->first), WALL) : WALL;
 }
 
 /* Limits are passed singly: COBYLA's linear model cannot follow the kink of their maximum. */
-static void bounds(unsigned n_each, double each[], unsigned n, const double u[], double gradient[], void *user)
+static void bounds(unsigned n_each, double each[], unsigned, const double u[], double[], void *user)
 {
-    (void)n;
-    (void)gradient;
     const Improver *m = ((Descent *)user)->m;
     const int ok = simulate(user, u);
     size_t i = 0;

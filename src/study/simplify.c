@@ -146,9 +146,8 @@ static size_t nearest_plate(const ImproveConfig *c, double t)
 }
 
 /* An ImproveStep on the numbers that are sold: every neighbour of the best design. */
-static Status move(Improver *m, double size, Err *err)
+static Status move(Improver *m, double, Err *err)
 {
-    (void)size;
     const ImproveConfig *c = m->config;
     m->n = 0;
     for (size_t j = 0; j < m->problem->n_var; j++) {
@@ -167,20 +166,6 @@ static Status move(Improver *m, double size, Err *err)
         }
     }
     return improver_try(m, err);
-}
-
-/* Device after device goes, the one that loses least, while what may be lost is not. */
-static Status drop_what_earns_little(Improver *m, Err *err)
-{
-    do {
-        m->n = 0;
-        m->value = nextafter(1.0, 2.0);
-        for (size_t j = 0; j < m->problem->n_var; j++)
-            if (!isnan(gone(m, j)) && leads(m, j))
-                add(m, j, gone(m, j), 1);
-        TRY(improver_try(m, err));
-    } while (m->value <= 1.0);
-    return note(m, SIMPLIFY_FEWER, err);
 }
 
 Status simplify_design(Improver *m, Err *err)
@@ -213,7 +198,16 @@ Status simplify_design(Improver *m, Err *err)
     m->budget = ROUNDS * 2 * n_var;
     TRY(improver_descend(m, move, err));
     TRY(note(m, SIMPLIFY_MOVED, err));
-    if (m->out->loss[SIMPLIFY_MOVED] <= 1.0)
-        TRY(drop_what_earns_little(m, err));
+    if (m->out->loss[SIMPLIFY_MOVED] <= 1.0) { /* device after device goes, the one that loses least, while it may */
+        do {
+            m->n = 0;
+            m->value = nextafter(1.0, 2.0);
+            for (size_t j = 0; j < n_var; j++)
+                if (!isnan(gone(m, j)) && leads(m, j))
+                    add(m, j, gone(m, j), 1);
+            TRY(improver_try(m, err));
+        } while (m->value <= 1.0);
+        TRY(note(m, SIMPLIFY_FEWER, err));
+    }
     return improver_finer(m->run->settings, &finer) ? improver_errors(m, SIMPLIFY_START, &finer, 0, err) : STATUS_OK;
 }

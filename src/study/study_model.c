@@ -14,40 +14,29 @@ json_t *study_model_of(const Run *run)
 
 /* -- the choice ---------------------------------------------------------------------------------------------------- */
 
-static json_t *json_of_choice(const ModelChoice *c)
-{
-    json_t *o = ladder_json(&c->ladder);
-    return json_put(o, "designs=%zu records=%zu cases=%zu simulations=%zu speed_factor=%g", c->n_designs, c->n_records,
-                    c->n_cases, c->n_simulations, c->ladder.all_s / c->ladder.set_s);
-}
-
-/* What the run has chosen, where these settings leave it open. */
-static Status keep(Settings *s, const Run *run, Err *err)
-{
-    json_t *model = study_model_of(run), *value;
-    const char *key;
-    Status status = STATUS_OK;
-    json_object_foreach(json_object_get(model, "settings"), key, value)
-    {
-        if (!settings_gives(s, key) && json_is_string(value))
-            THEN(status, settings_put(s, key, json_string_value(value), err));
-    }
-    json_decref(model);
-    return status;
-}
-
 Status study_model(Settings *s, const Run *run, const Observer *stop, json_t **model, Err *err)
 {
     ModelChoice *c;
+    Status status = STATUS_OK;
     *model = NULL;
     if (s->sim.model != MODEL_AUTO || s->problem.kind != PROBLEM_TOWER)
         return STATUS_OK;
-    if (run)
-        return keep(s, run, err);
+    if (run) { /* what it has chosen, where these settings leave it open */
+        json_t *chosen = study_model_of(run), *value;
+        const char *key;
+        json_object_foreach(json_object_get(chosen, "settings"), key, value)
+        {
+            if (!settings_gives(s, key) && json_is_string(value))
+                THEN(status, settings_put(s, key, json_string_value(value), err));
+        }
+        json_decref(chosen);
+        return status;
+    }
     TRY_ROOM(c, 1, "the choice of a model", err);
-    const Status status = model_choose(s, stop, c, err);
+    status = model_choose(s, stop, c, err);
     if (status == STATUS_OK && c->n_simulations > 0)
-        *model = json_of_choice(c);
+        *model = json_put(ladder_json(&c->ladder), "designs=%zu records=%zu cases=%zu simulations=%zu speed_factor=%g",
+                          c->n_designs, c->n_records, c->n_cases, c->n_simulations, c->ladder.all_s / c->ladder.set_s);
     free(c);
     return status;
 }
@@ -95,20 +84,6 @@ static size_t named_rows(const Run *run, size_t rows[1 + OBJECTIVES_MAX])
     return n;
 }
 
-static json_t *json_of_case(const Run *run, size_t row, const ModelCase *c, const Ladder *l)
-{
-    int is_enough = c->by_set.outcome == RUN_OK;
-    json_t *set = json_object(), *more = json_object();
-    for (int k = 0; k < LADDER_MEASURES; k++) {
-        const char *name = measure(LADDER_MEASURE[k])->name;
-        is_enough &= fabs(ladder_change(&c->by_set, &c->by_more, k)) <= l->tolerance[k];
-        json_object_set_new(set, name, json_number(c->by_set.value[LADDER_MEASURE[k]]));
-        json_object_set_new(more, name, json_number(c->by_more.value[LADDER_MEASURE[k]]));
-    }
-    return json_of("design=%ld record=%zu is_enough=%c by_the_set=%p with_more=%p", run->table.row[row].id,
-                   c->record + 1, is_enough, set, more);
-}
-
 static Status confirm(const Run *run, json_t *model, const Observer *stop, Err *err)
 {
     size_t rows[1 + OBJECTIVES_MAX], n_cases;
@@ -123,8 +98,20 @@ static Status confirm(const Run *run, json_t *model, const Observer *stop, Err *
     for (size_t i = 0; i < n; i++)
         memcpy(X + i * n_var, run_x(run, rows[i]), n_var * sizeof *X);
     const Status status = model_confirm(run->settings, n, n_var, X, stop, &now, &cases, &n_cases, err);
-    for (size_t i = 0; i < n_cases && status == STATUS_OK; i++)
-        json_array_append_new(designs, json_of_case(run, rows[(size_t)(cases[i].x - X) / n_var], &cases[i], &now));
+    for (size_t i = 0; i < n_cases && status == STATUS_OK; i++) {
+        const ModelCase *c = &cases[i];
+        const size_t row = rows[(size_t)(c->x - X) / n_var];
+        int is_enough = c->by_set.outcome == RUN_OK;
+        json_t *set = json_object(), *with_more = json_object();
+        for (int k = 0; k < LADDER_MEASURES; k++) {
+            const char *name = measure(LADDER_MEASURE[k])->name;
+            is_enough &= fabs(ladder_change(&c->by_set, &c->by_more, k)) <= now.tolerance[k];
+            json_object_set_new(set, name, json_number(c->by_set.value[LADDER_MEASURE[k]]));
+            json_object_set_new(with_more, name, json_number(c->by_more.value[LADDER_MEASURE[k]]));
+        }
+        json_array_append_new(designs, json_of("design=%ld record=%zu is_enough=%c by_the_set=%p with_more=%p",
+                                               run->table.row[row].id, c->record + 1, is_enough, set, with_more));
+    }
     for (size_t i = 0; i < now.n; i++)
         if (now.effect[i].is_kept && !before.effect[i].is_kept)
             json_object_set_new(more, now.effect[i].key, json_string(now.effect[i].with));
