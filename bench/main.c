@@ -110,16 +110,6 @@ static Status run_sweep(const Args *args, Err *err)
     return status;
 }
 
-static const ArgOption SWEEP_OPTIONS[] = {
-    {"--case", "NAME,...", NULL, 0, "linear, one-impact, irregular, tiny, zero; all unless given"},
-    {"--engine", "NAME,...", NULL, 0, "all unless given"},
-    {"--quick", NULL, NULL, 0, "half the time"},
-    OPTION_CSV,
-    OPTIONS_MOTION,
-    OPTION_SET,
-    OPTION_END,
-};
-
 /* ---- designs per second ------------------------------------------------------------------------------------------ */
 
 static Status run_throughput(const Args *args, Err *err)
@@ -131,14 +121,6 @@ static Status run_throughput(const Args *args, Err *err)
     motion_free(&b.motion);
     return status;
 }
-
-static const ArgOption THROUGHPUT_OPTIONS[] = {
-    {"--count", NULL, NULL, 0, "four designs by the fast engine, and nothing else: counts of its work"},
-    {"--quick", NULL, NULL, 0, "fewer designs, shorter comparisons"},
-    OPTIONS_MOTION,
-    OPTION_SET,
-    OPTION_END,
-};
 
 /* ---- what the accuracies hold ------------------------------------------------------------------------------------ */
 
@@ -191,17 +173,6 @@ static Status run_promise(const Args *args, Err *err)
     return status;
 }
 
-static const ArgOption PROMISE_OPTIONS[] = {
-    {"--record", "FILE", NULL, 1, "a ground motion; may be repeated; the built-in ones unless given"},
-    {"--scenes", "N", NULL, 0, "random scenes of each of the ten kinds; 60 unless given"},
-    {"--front", "FILE", NULL, 0, "designs to simulate under all of the first record, as `imtet export` writes them"},
-    {"--out", "FILE", NULL, 0, "the table, as CSV"},
-    OPTION_PGA,
-    OPTION_UNIT,
-    OPTION_SET,
-    OPTION_END,
-};
-
 /* ---- where methods fail ------------------------------------------------------------------------------------------ */
 
 static Status run_stability(const Args *args, Err *err)
@@ -216,16 +187,6 @@ static Status run_stability(const Args *args, Err *err)
     return stability(&plan, err);
 }
 
-static const ArgOption STABILITY_OPTIONS[] = {
-    {"--quick", NULL, NULL, 0, "smaller cases, for tests"},
-    {"--long", NULL, NULL, 0, "also cases of 1e6 and 1e7 steps"},
-    {"--engine", "NAME", NULL, 0, "one engine; all unless given"},
-    {"--case", "NAME", NULL, 0, "one case; all unless given"},
-    {"--seconds", "N", NULL, 0, "processor time of one cell [s]; 20 unless given"},
-    {"--out", "FILE", NULL, 0, "the table, as CSV"},
-    OPTION_END,
-};
-
 static Status run_laws(const Args *args, Err *err)
 {
     return laws(&(LawTables){.curves = args_value(args, "--csv"),
@@ -233,13 +194,6 @@ static Status run_laws(const Args *args, Err *err)
                              .engines = args_value(args, "--engines")},
                 err);
 }
-
-static const ArgOption LAWS_OPTIONS[] = {
-    {"--csv", "FILE", NULL, 0, "the rebound curves"},
-    {"--tower", "FILE", NULL, 0, "what the law changes in the tower, as CSV"},
-    {"--engines", "FILE", NULL, 0, "fast, cvode and etdrk4 in the tower under every law, as CSV"},
-    OPTION_END,
-};
 
 /* ---- the search -------------------------------------------------------------------------------------------------- */
 
@@ -261,17 +215,6 @@ static Status run_factors(const Args *args, Err *err)
         memcpy(plan.budgets, budgets, sizeof budgets);
     return factors_run(&plan, stdout, err);
 }
-
-static const ArgOption FACTOR_OPTIONS[] = {
-    {"--problem", "LIST", NULL, 0, "some of the problems; all but those kept aside unless given"},
-    {"--aside", NULL, NULL, 0, "those kept aside instead"},
-    {"--mixed", NULL, NULL, 0, "those with whole numbers and choices instead"},
-    {"--evals", "N", NULL, 0, "evaluations; a search of 1000, read after 300, 500 and 1000, unless given"},
-    {"--seeds", "N", NULL, 0, "5 unless given"},
-    {"--first-seed", "N", NULL, 0, "101 unless given"},
-    OPTION_SET,
-    OPTION_END,
-};
 
 static Status run_loop(const Args *args, Err *err)
 {
@@ -301,33 +244,6 @@ static Status run_schedule(const Args *args, Err *err)
     return schedule(&plan, stdout, err);
 }
 
-static const ArgOption SCHEDULE_OPTIONS[] = {
-    {"--serial", "SHARE", NULL, 0, "of choosing designs, that one processor does alone; 0.2 unless given"},
-    {"--ends", "S", NULL, 0, "work behind the search: polishing, naming, baselines"},
-    {"--chain", "S", NULL, 0, "the longest chain in it"},
-    OPTION_END,
-};
-
-static const ArgOption LOOP_OPTIONS[] = {
-    {"--iterations", "N", NULL, 0, "100 unless given"},
-    {"--error", "SHARE", NULL, 0, "of the range, that is acceptable; 0.15 unless given; 0: none is"},
-    {"--seeds", "N", NULL, 0, "3 unless given; the first is search.seed"},
-    OPTION_CSV,
-    OPTIONS_MOTION,
-    OPTION_SET,
-    OPTION_END,
-};
-
-static const ArgOption PROBLEM_OPTIONS[] = {
-    SETTING("--max-evals", "N", "search.max_evals", "stop after so many evaluations"),
-    SETTING("--seed", "N", "search.seed", "same seed, same settings: same bytes"),
-    SETTING("--threads", "N", "search.threads", "0: one per processor"),
-    {"--noise", "SHARE", NULL, 0, "standard deviation of an objective that the search sees, as a share of its value"},
-    OPTION_CSV,
-    OPTION_SET,
-    OPTION_END,
-};
-
 /* ---- the command line -------------------------------------------------------------------------------------------- */
 
 static const Command COMMANDS[] = {
@@ -338,7 +254,15 @@ static const Command COMMANDS[] = {
          "Runs every engine at many tolerances on short windows of one ground motion and compares each run with\n"
          "a reference that two unrelated methods agree on. Progress goes to standard error, the table to\n"
          "standard output. Timings want the machine to themselves.",
-     .options = SWEEP_OPTIONS,
+     .options =
+         {
+             {"--case", "NAME,...", NULL, 0, "linear, one-impact, irregular, tiny, zero; all unless given"},
+             {"--engine", "NAME,...", NULL, 0, "all unless given"},
+             {"--quick", NULL, NULL, 0, "half the time"},
+             OPTION_CSV,
+             OPTIONS_MOTION,
+             OPTION_SET,
+         },
      .run = run_sweep,
      .program = "imtet-bench"},
     {.name = "throughput",
@@ -346,7 +270,13 @@ static const Command COMMANDS[] = {
      .example = "imtet-bench throughput --quick",
      .details = "Runs 24 designs with irregular gaps by the engine fast on one thread and compares its time\n"
                 "with that of other engines at equal error. Timings want the machine to themselves.",
-     .options = THROUGHPUT_OPTIONS,
+     .options =
+         {
+             {"--count", NULL, NULL, 0, "four designs by the fast engine, and nothing else: counts of its work"},
+             {"--quick", NULL, NULL, 0, "fewer designs, shorter comparisons"},
+             OPTIONS_MOTION,
+             OPTION_SET,
+         },
      .run = run_throughput,
      .program = "imtet-bench"},
     {.name = "promise",
@@ -356,7 +286,17 @@ static const Command COMMANDS[] = {
                 "accuracy: quantiles of the errors\n"
                 "against accuracy fine, share of the predictable ones that hold the promise, time; true over likely\n"
                 "error; and fine against CVODE in a tenth of the log-uniform ones. Ten scenes take a minute.",
-     .options = PROMISE_OPTIONS,
+     .options =
+         {
+             {"--record", "FILE", NULL, 1, "a ground motion; may be repeated; the built-in ones unless given"},
+             {"--scenes", "N", NULL, 0, "random scenes of each of the ten kinds; 60 unless given"},
+             {"--front", "FILE", NULL, 0,
+              "designs to simulate under all of the first record, as `imtet export` writes them"},
+             {"--out", "FILE", NULL, 0, "the table, as CSV"},
+             OPTION_PGA,
+             OPTION_UNIT,
+             OPTION_SET,
+         },
      .run = run_promise,
      .program = "imtet-bench"},
     {.name = "stability",
@@ -365,7 +305,15 @@ static const Command COMMANDS[] = {
      .details =
          "Fails where an engine answers wrongly in silence, or where the engine fast does anything but hold. Each\n"
          "cell runs in a process of its own: a crash is a failure of that cell, no answer in time a refusal.",
-     .options = STABILITY_OPTIONS,
+     .options =
+         {
+             {"--quick", NULL, NULL, 0, "smaller cases, for tests"},
+             {"--long", NULL, NULL, 0, "also cases of 1e6 and 1e7 steps"},
+             {"--engine", "NAME", NULL, 0, "one engine; all unless given"},
+             {"--case", "NAME", NULL, 0, "one case; all unless given"},
+             {"--seconds", "N", NULL, 0, "processor time of one cell [s]; 20 unless given"},
+             {"--out", "FILE", NULL, 0, "the table, as CSV"},
+         },
      .run = run_stability,
      .program = "imtet-bench"},
     {.name = "laws",
@@ -375,7 +323,12 @@ static const Command COMMANDS[] = {
          "Rebound against restitution by the engine fast and by an independent integrator, and what the limit of\n"
          "v0 changes. Fails where a law does not return what it is known to, and with --engines where fast or etdrk4\n"
          "is farther from cvode than docs/promise.md says.",
-     .options = LAWS_OPTIONS,
+     .options =
+         {
+             {"--csv", "FILE", NULL, 0, "the rebound curves"},
+             {"--tower", "FILE", NULL, 0, "what the law changes in the tower, as CSV"},
+             {"--engines", "FILE", NULL, 0, "fast, cvode and etdrk4 in the tower under every law, as CSV"},
+         },
      .run = run_laws,
      .program = "imtet-bench"},
     {.name = "search",
@@ -385,7 +338,16 @@ static const Command COMMANDS[] = {
          "How many evaluations a plain search needs for the IGD+ and the hypervolume that the surrogate reaches, as\n"
          "a multiple, 20 at most: medians over the seeds, the geometric mean over the problems. An interrupted\n"
          "table with --keep goes on where it was; after a change of the search the folder is to be emptied.",
-     .options = FACTOR_OPTIONS,
+     .options =
+         {
+             {"--problem", "LIST", NULL, 0, "some of the problems; all but those kept aside unless given"},
+             {"--aside", NULL, NULL, 0, "those kept aside instead"},
+             {"--mixed", NULL, NULL, 0, "those with whole numbers and choices instead"},
+             {"--evals", "N", NULL, 0, "evaluations; a search of 1000, read after 300, 500 and 1000, unless given"},
+             {"--seeds", "N", NULL, 0, "5 unless given"},
+             {"--first-seed", "N", NULL, 0, "101 unless given"},
+             OPTION_SET,
+         },
      .run = run_factors,
      .program = "imtet-bench"},
     {.name = "loop",
@@ -393,7 +355,15 @@ static const Command COMMANDS[] = {
      .example = "imtet-bench loop --iterations 20 --seeds 1",
      .details = "The paper's genetic algorithm on radial basis functions, and this program's search with as many\n"
                 "simulations from the same first designs: a row of every iteration and generation, as CSV.",
-     .options = LOOP_OPTIONS,
+     .options =
+         {
+             {"--iterations", "N", NULL, 0, "100 unless given"},
+             {"--error", "SHARE", NULL, 0, "of the range, that is acceptable; 0.15 unless given; 0: none is"},
+             {"--seeds", "N", NULL, 0, "3 unless given; the first is search.seed"},
+             OPTION_CSV,
+             OPTIONS_MOTION,
+             OPTION_SET,
+         },
      .run = run_loop,
      .program = "imtet-bench"},
     {.name = "schedule",
@@ -401,7 +371,12 @@ static const Command COMMANDS[] = {
      .summary = "a run of one thread replayed on 1 to 64 workers",
      .example = "imtet-bench schedule results/kobe",
      .details = "Efficiency, critical path and waiting, from the times of its designs and of its search. As CSV.",
-     .options = SCHEDULE_OPTIONS,
+     .options =
+         {
+             {"--serial", "SHARE", NULL, 0, "of choosing designs, that one processor does alone; 0.2 unless given"},
+             {"--ends", "S", NULL, 0, "work behind the search: polishing, naming, baselines"},
+             {"--chain", "S", NULL, 0, "the longest chain in it"},
+         },
      .run = run_schedule,
      .program = "imtet-bench"},
     {.name = "problem",
@@ -412,7 +387,16 @@ static const Command COMMANDS[] = {
          "Of 22 variables and 7 objectives (problem.variables, problem.objectives); every evaluated design, one row\n"
          "each in their order: variables, then objectives. With --noise the noisy objectives of the search stand\n"
          "before the exact ones.",
-     .options = PROBLEM_OPTIONS,
+     .options =
+         {
+             SETTING("--max-evals", "N", "search.max_evals", "stop after so many evaluations"),
+             SETTING("--seed", "N", "search.seed", "same seed, same settings: same bytes"),
+             SETTING("--threads", "N", "search.threads", "0: one per processor"),
+             {"--noise", "SHARE", NULL, 0,
+              "standard deviation of an objective that the search sees, as a share of its value"},
+             OPTION_CSV,
+             OPTION_SET,
+         },
      .run = problem_run,
      .program = "imtet-bench"},
 };

@@ -19,19 +19,11 @@
 /* Below this the first deep call would end the program by a fault of its own. */
 static const rlim_t STACK_MIN = 256 << 10;
 
-static Status check_limits(const Command *command, Err *err)
-{
-    struct rlimit stack;
-    if (getrlimit(RLIMIT_STACK, &stack) == 0 && stack.rlim_cur < STACK_MIN)
-        return fail(err, STATUS_NO_MEMORY, "the stack is limited to %zu kB (ulimit -s); %zu kB are needed",
-                    (size_t)(stack.rlim_cur >> 10), (size_t)(STACK_MIN >> 10));
-    return command->only_reads ? STATUS_OK : linalg_room(1, err);
-}
-
 static Status run_command(int argc, char *argv[], Err *err)
 {
     const Command *command;
     const char *option;
+    struct rlimit stack;
     Args args;
     TRY(command_find(argv[1], &command, &option, err));
     for (int i = 2; option && i < argc; i++) /* `plot --out DIR` is `report --pictures DIR` */
@@ -42,7 +34,10 @@ static Status run_command(int argc, char *argv[], Err *err)
     const int n_before = option ? 1 : 2; /* the option of an old name stands in the place of that name */
     if (option)
         argv[1] = (char *)(uintptr_t)option;
-    TRY(check_limits(command, err));
+    if (getrlimit(RLIMIT_STACK, &stack) == 0 && stack.rlim_cur < STACK_MIN)
+        return fail(err, STATUS_NO_MEMORY, "the stack is limited to %zu kB (ulimit -s); %zu kB are needed",
+                    (size_t)(stack.rlim_cur >> 10), (size_t)(STACK_MIN >> 10));
+    TRY(command->only_reads ? STATUS_OK : linalg_room(1, err));
     if (command->only_reads || command->is_alone)
         cluster_disband();
     Status status = args_parse(&args, command, argc - n_before, argv + n_before, err);
@@ -52,11 +47,6 @@ static Status run_command(int argc, char *argv[], Err *err)
         status = command_run(&args, err);
     args_free(&args);
     return status;
-}
-
-static int is_version(const char *word)
-{
-    return strcmp(word, "--version") == 0 || strcasecmp(word, "-v") == 0 || strcmp(word, "version") == 0;
 }
 
 static int is_help(const char *word)
@@ -98,17 +88,17 @@ static Status run(int argc, char *argv[], Err *err)
         usage_write(stderr);
         return fail(err, STATUS_USAGE, "no command was given");
     }
-    if (is_help(argv[1]) || strcmp(argv[1], "--man") == 0)
+    const char *word = argv[1];
+    if (is_help(word) || strcmp(word, "--man") == 0)
         return explain(argc, argv, err);
-    if (strcmp(argv[1], "--json") == 0 && argc == 3 && strcmp(argv[2], "--version") == 0)
+    if (strcmp(word, "--json") == 0 && argc == 3 && strcmp(argv[2], "--version") == 0)
         return show_json(program_description(), err);
-    if (is_version(argv[1]))
+    if (strcmp(word, "--version") == 0 || strcasecmp(word, "-v") == 0 || strcmp(word, "version") == 0)
         return version(argc, argv, err);
-    if (strcmp(argv[1], "--commands") == 0)
-        for (int i = 0; command_at(i); i++)
-            puts(command_at(i)->name);
-    else
+    if (strcmp(word, "--commands") != 0)
         return run_command(argc, argv, err);
+    for (int i = 0; command_at(i); i++)
+        puts(command_at(i)->name);
     return STATUS_OK;
 }
 
@@ -123,45 +113,38 @@ static void *json_memory(size_t size)
     _exit(status_exit_code(STATUS_NO_MEMORY));
 }
 
-/* A file that is opened in the place of a standard stream that was closed (`imtet ... >&-`) would get what is meant for
- * that. What is open for reading only refuses it, as a closed one does. */
-static void hold_standard_streams(void)
-{
-    for (int fd = 0; fd <= 2; fd++)
-        if (fcntl(fd, F_GETFD) < 0 && open("/dev/null", O_RDONLY) < 0)
-            return;
-}
-
-/* A rank of a cluster other than the first evaluates for that one and runs no command. */
-static Status run_here(int argc, char *argv[], Err *err)
-{
-    char version[CLUSTER_VERSION_MAX] = "";
-    int serves;
-    program_identity(sizeof version, version);
-    TRY(cluster_join(&argc, &argv, version, simulator_open, &serves, err));
-    return serves ? STATUS_OK : run(argc, argv, err);
-}
-
-/* One sentence on standard error, and with --json also an object on standard output, unless there is one already: a
- * stream that was never written to has no orientation. */
-static void tell_failure(int argc, char *argv[], Status status, const char *words)
-{
-    fprintf(stderr, "imtet: %s\n", words);
-    for (int i = 1; i < argc; i++)
-        if (strcmp(argv[i], "--json") == 0 && fwide(stdout, 0) == 0)
-            show_json(json_of("error=%s status=%ld", words, (long)status_exit_code(status)), &(Err){0});
-}
-
 int main(int argc, char *argv[])
 {
     Err err = {0};
-    hold_standard_streams();
+    char version[CLUSTER_VERSION_MAX] = "";
+    int serves = 0;
+
+    /* 1. A file that is opened in the place of a standard stream that was closed (`imtet ... >&-`) would get what is
+     * meant for that. What is open for reading only refuses it, as a closed one does. */
+    for (int fd = 0; fd <= 2; fd++)
+        if (fcntl(fd, F_GETFD) < 0 && open("/dev/null", O_RDONLY) < 0)
+            break;
     json_set_alloc_funcs(json_memory, free);
-    Status status = linalg_pin() ? run_here(argc, argv, &err) : fail(&err, STATUS_NO_MEMORY, "no memory to begin with");
+
+    /* 2. A rank of a cluster other than the first evaluates for that one and runs no command. */
+    Status status = linalg_pin() ? STATUS_OK : fail(&err, STATUS_NO_MEMORY, "no memory to begin with");
+    if (status == STATUS_OK) {
+        program_identity(sizeof version, version);
+        status = cluster_join(&argc, &argv, version, simulator_open, &serves, &err);
+    }
+    if (!serves)
+        THEN(status, run(argc, argv, &err));
     if ((fflush(stdout) != 0 || ferror(stdout)) && status == STATUS_OK)
         status = fail(&err, STATUS_IO, "standard output: cannot be written");
+
+    /* 3. A failure is a sentence on standard error, and with --json also an object on standard output, unless there is
+     * one already: a stream that was never written to has no orientation. */
+    const char *words = err.text[0] ? err.text : status_words(status);
     if (status != STATUS_OK)
-        tell_failure(argc, argv, status, err.text[0] ? err.text : status_words(status));
+        fprintf(stderr, "imtet: %s\n", words);
+    for (int i = 1; i < argc && status != STATUS_OK; i++)
+        if (strcmp(argv[i], "--json") == 0 && fwide(stdout, 0) == 0)
+            show_json(json_of("error=%s status=%ld", words, (long)status_exit_code(status)), &(Err){0});
     cluster_leave(status_exit_code(status));
     return status_exit_code(status);
 }

@@ -59,7 +59,7 @@ TEST(the_spectrum_is_the_same_as_json_and_as_csv)
 /* Husid's curve ends at 1, velocity and displacement reach the peaks of the table. */
 TEST(the_histories_reach_the_figures_of_the_motion)
 {
-    json_t *o = json_of("spectrum tests/motion/jma.csv --channel EW --json --history @/history.csv");
+    json_t *o = json_of("spectrum tests/motion/jma.csv --set motion.channel=EW --json --history @/history.csv");
     Table t = table_of("history.csv");
     assert_int_equal(t.n_rows, 43);
     assert_int_equal(t.n_cols, 5);

@@ -122,7 +122,7 @@ TEST(another_database_in_the_place_of_a_run_ends_it)
 TEST(a_damaged_state_gives_way_to_its_copy_with_the_same_end_also_where_there_is_more_to_do)
 {
     Said said;
-    static const char FURTHER[] = "optimize @/%s --max-evals 60 --force-settings";
+    static const char FURTHER[] = "optimize @/%s --max-evals 60";
     shell_in_place("cp -r sound whole && cp -r sound damaged && cp -r sound hopeless");
     change_database("damaged/run.sqlite", "UPDATE state SET bytes = zeroblob(length(bytes)) WHERE copy = 1");
     change_database("hopeless/run.sqlite", "UPDATE state SET bytes = zeroblob(length(bytes))");
@@ -157,7 +157,7 @@ TEST(a_bit_in_the_text_of_a_table_is_found)
     fputc('P' ^ 4, f);
     assert_int_equal(fclose(f), 0);
     expect(74, "its table front is not that of this run", "export @/bit --csv -");
-    expect(74, "its table front is not that of this run", "optimize @/bit --max-evals 50 --force-settings");
+    expect(74, "its table front is not that of this run", "optimize @/bit --max-evals 50");
 }
 
 TEST(a_damaged_run_says_what_its_tables_still_know_and_another_begins_with_it)
@@ -168,7 +168,7 @@ TEST(a_damaged_run_says_what_its_tables_still_know_and_another_begins_with_it)
     change_database("hurt/run.sqlite", "UPDATE evaluation SET f1 = 0 WHERE id = 2");
     expect(74, advice, "status @/hurt");
     expect(74, advice, "optimize @/hurt");
-    expect(74, advice, "optimize @/hurt --max-evals 60 --force-settings"); /* read while the search is built of it */
+    expect(74, advice, "optimize @/hurt --max-evals 60"); /* read while the search is built of it */
     shell_in_place("dd if=/dev/zero of=hurt/run.sqlite bs=4096 count=1 conv=notrunc status=none"); /* the first page */
     expect(74, advice, "status @/hurt");
     shell_in_place("rm hurt/run.sqlite* && touch hurt/run.sqlite");

@@ -143,7 +143,7 @@ TEST(a_folder_that_is_read_only_is_named)
     assert_int_equal(mount(folder, folder, NULL, MS_BIND | MS_REMOUNT | MS_RDONLY, NULL), 0);
     Said new_run, old_run;
     run(&new_run, "optimize @/textbook.ini --out @/fixed/other");
-    run(&old_run, "optimize @/fixed/run --max-evals 30 --force-settings");
+    run(&old_run, "optimize @/fixed/run --max-evals 30");
     const Status readable = run_read(&saved, path_of("fixed/run", run_there), &err);
     const size_t n = saved.table.n;
     run_free(&saved);
@@ -202,10 +202,10 @@ TEST(a_database_that_somebody_keeps_locked_is_busy)
     free(output_of("optimize @/textbook.ini --max-evals 20 --out @/busy"));
     assert_int_equal(sqlite3_open(path_of("busy/run.sqlite", path), &other), SQLITE_OK);
     assert_int_equal(sqlite3_exec(other, "BEGIN IMMEDIATE", NULL, NULL, NULL), SQLITE_OK);
-    expect(74, "busy/run.sqlite: is busy", "optimize @/busy --max-evals 30 --force-settings");
+    expect(74, "busy/run.sqlite: is busy", "optimize @/busy --max-evals 30");
     free(output_of("export @/busy --csv @/while-busy.csv"));
     sqlite3_close(other);
-    free(output_of("optimize @/busy --max-evals 30 --force-settings"));
+    free(output_of("optimize @/busy --max-evals 30"));
 }
 
 static void overwrite(const char *name, long offset, const char *bytes, size_t n)
@@ -280,7 +280,7 @@ TEST(a_database_runs_nothing_and_needs_no_more_memory_than_its_size)
         shell_in_place("rm -rf sent; cp -r own sent");
         change_database("sent/run.sqlite", CHANGES[i]);
         expect(74, "sent/run.sqlite: ", "status @/sent");
-        expect(74, "sent/run.sqlite: ", "optimize @/sent --max-evals 40 --force-settings");
+        expect(74, "sent/run.sqlite: ", "optimize @/sent --max-evals 40");
     }
     assert_less(peak_kib(), usual + 64 * 1024);
 }

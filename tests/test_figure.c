@@ -72,7 +72,7 @@ TEST(a_share_that_is_a_negative_nothing_is_none)
     figures_put(row, "ed5_10_pct", -0.0066, NAN, NAN);
     figures_put(row, "edcs_pct", -3.21, NAN, NAN); /* a mean less a standard deviation */
     figures_put(row, "ed1_pct", -0.0066, 0.01, NAN);
-    document_print(&d, f);
+    document_print(&d, f, 0);
     assert_int_equal(fclose(f), 0);
     if (!strstr(text, " 0.0 ") && !strstr(text, "\n0.0 "))
         fail_msg("%s", text);

@@ -1008,11 +1008,10 @@ TEST(marks_of_thousands_and_commas_of_two_meanings_are_refused)
     expect_refusal("t;a_cm_s2\n0.00;1,234.5\n0.01;0.5\n", "there:2: '1,234.5' has a point and a comma");
     expect_refusal("t;a_cm_s2\n0,00;1,5\n0.01;0.5\n",
                    "there:3: decimal points and decimal commas are mixed; line 2 has the other");
-    expect_refusal(
-        "# dt = 0.01, units: m/s2\n3,1\n0,5\n1,2\n0,3\n",
-        "there:2: has 4 rows of 2 columns without names: choose one by motion.channel (--channel 1 to 2); if "
-        "they are one motion written row by row, --text per_line=2; if they are one column with "
-        "decimal commas, put its name above it");
+    expect_refusal("# dt = 0.01, units: m/s2\n3,1\n0,5\n1,2\n0,3\n",
+                   "there:2: has 4 rows of 2 columns without names: choose one by motion.channel (1 to 2); if "
+                   "they are one motion written row by row, --text per_line=2; if they are one column with "
+                   "decimal commas, put its name above it");
 }
 
 /* Nothing is taken from prose: a unit stands in a column's name or behind the key "unit" or "units". */

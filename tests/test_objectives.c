@@ -108,7 +108,7 @@ TEST(every_file_and_command_follows_the_objectives_by_name)
     table_free(&polished);
     free(output_of("optimize @/other"));
     expect_output("largest bending stress of the core [Pa], lower is better",
-                  "optimize @/other --max-evals 34 --force-settings");
+                  "optimize @/other --max-evals 34");
     expect(65, "search.objectives is core_stress_pa, impacts , j1_m there, now auto",
            "optimize @/tower.ini --out @/other");
 }
@@ -154,7 +154,7 @@ static void expect_limited_in(const char *name)
 TEST(limited_results_stand_beside_the_objectives)
 {
     expect_limited_in("limited/front.csv");
-    free(output_of("optimize @/limited --max-evals 40 --force-settings"));
+    free(output_of("optimize @/limited --max-evals 40"));
     expect_limited_in("limited/front.csv");
     free(output_of("export @/limited --csv @/exported.csv"));
     expect_limited_in("exported.csv");

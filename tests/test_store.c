@@ -137,15 +137,14 @@ TEST(more_simulations_go_on_the_same_whenever_they_are_granted)
 
 /* -- what is refused ----------------------------------------------------------------------------------------------- */
 
-static void refused_with(const Settings *s, int force, const char *said, const char *line)
+static void refused_with(const Settings *s, const char *said, const char *line)
 {
     char *lines = NULL;
     size_t length;
     err = (Err){0};
     StudySummary summary;
-    const StudyOptions options = {.force = force};
     FILE *f = open_memstream(&lines, &length);
-    assert_int_equal(study_run(s, &options, &summary, f, &err), STATUS_BAD_DATA);
+    assert_int_equal(study_run(s, &(StudyOptions){0}, &summary, f, &err), STATUS_BAD_DATA);
     fclose(f);
     if (!strstr(err.text, said) || !strstr(lines, line))
         fail_msg("said: %s\nlines: %swanted: %s\n%s", err.text, lines, said, line);
@@ -166,31 +165,29 @@ TEST(a_search_that_another_version_interrupted_is_refused_before_anything_is_cha
     run_free(&stopped);
     change_database("version/run.sqlite", command);
     shell_in_place("cp -r version as-it-was");
-    refused_with(&s, 0, "another version of the program interrupted this search", "");
-    refused_with(&s, 1, "nothing was changed", "");
+    refused_with(&s, "another version of the program interrupted this search", "");
+    refused_with(&s, "nothing was changed", "");
     shell_in_place("diff -r -x lock version as-it-was");
 }
 
-TEST(other_settings_are_refused_key_by_key_and_limits_can_be_forced)
+TEST(other_settings_are_refused_key_by_key_and_limits_may_change)
 {
     Settings s = settings_of(TEXTBOOK, "textbook-whole");
     s.search.seed = 5;
     s.search.stop_after = 30;
-    refused_with(&s, 0, "search.seed is 1 there, now 5, and more; put that back, or choose another --out",
+    refused_with(&s, "search.seed is 1 there, now 5, and more; put that back, or choose another --out",
                  "search.stop_after: 0 in the run, now 30 (a limit)\n");
-    refused_with(&s, 1, "search.seed is 1 there", "search.seed: 1 in the run, now 5\n");
+    refused_with(&s, "search.seed is 1 there", "search.seed: 1 in the run, now 5\n");
     s.search.seed = 1;
-    refused_with(&s, 0, "--force-settings lowers limits", "search.stop_after");
     s.search.max_evals = 39;
-    refused_with(&s, 1, "search.max_evals = 39 is less than the 40 simulations that it holds", "search.max_evals");
+    refused_with(&s, "search.max_evals = 39 is less than the 40 simulations that it holds", "search.max_evals");
     s.search.max_evals = 40;
     Settings other = s; /* a value too long for the message is marked as cut, and ends it no earlier */
     snprintf(other.problem.command, OPTION_TEXT_MAX, "no%0200d", 0);
-    refused_with(&other, 0, "problem.command is " TEXTBOOK_WORKER " dtlz2 6 3 0.05 there, now no000",
-                 "problem.command");
-    refused_with(&other, 0, "000..., and more; put that back, or choose another --out", "problem.command");
+    refused_with(&other, "problem.command is " TEXTBOOK_WORKER " dtlz2 6 3 0.05 there, now no000", "problem.command");
+    refused_with(&other, "000..., and more; put that back, or choose another --out", "problem.command");
     StudySummary summary;
-    CHECK_OK(study_run(&s, &(StudyOptions){.force = 1}, &summary, NULL, &err), &err);
+    CHECK_OK(study_run(&s, &(StudyOptions){0}, &summary, NULL, &err), &err);
     CHECK_OK(study_run(&s, &(StudyOptions){0}, &summary, NULL, &err), &err); /* they are the run's now */
 }
 
@@ -203,8 +200,7 @@ TEST(a_record_that_has_changed_is_another_setting)
     snprintf(s.motion.record, sizeof s.motion.record, "%s/record.csv", place.folder);
     assert_int_equal(run_by_pieces(&s, INT_MAX, &summary), 1);
     write_in_place("record.csv", "time_s,accel_m_s2\n0,0\n0.02,1\n0.04,-1\n0.06,0.6\n0.08,0\n");
-    refused_with(&s, 1, "motion.record has other content",
-                 "motion.record: has other content than when the run began\n");
+    refused_with(&s, "motion.record has other content", "motion.record: has other content than when the run began\n");
 }
 
 /* -- signals and hours --------------------------------------------------------------------------------------------- */
@@ -347,14 +343,14 @@ TEST(hours_are_obeyed_within_a_batch)
     s.search.threads = 1;
     for (double limit_s = 0.2; limit_s < 1.6 && summary.n_simulated == 0; limit_s *= 1.5) {
         s.search.max_hours = limit_s / 3600;
-        assert_int_equal(study_run(&s, &(StudyOptions){.force = 1}, &summary, NULL, &err), STATUS_STOPPED);
+        assert_int_equal(study_run(&s, &(StudyOptions){0}, &summary, NULL, &err), STATUS_STOPPED);
         assert_int_equal(summary.stopped, STOP_TIME);
         assert_at_most(summary.n_simulated, 1 + limit_s / 0.04);
     }
     assert_less(0, summary.n_simulated);
     s.search.threads = 2;
     s.search.max_hours = 0;
-    CHECK_OK(study_run(&s, &(StudyOptions){.force = 1}, &summary, NULL, &err), &err);
+    CHECK_OK(study_run(&s, &(StudyOptions){0}, &summary, NULL, &err), &err);
     assert_int_equal(summary.n_simulated, 40);
     assert_same_files("hours/front.csv", "interrupted/front.csv");
 }

@@ -154,7 +154,8 @@ static size_t n_files(const char *folder)
 
 TEST(a_design_is_evaluated_on_every_motion_of_a_folder)
 {
-    json_t *o = json_of("evaluate @/threads-1 --design knee --record tests/motion --channel 1 --pga 0.3 --json");
+    json_t *o =
+        json_of("evaluate @/threads-1 --design knee --record tests/motion --set motion.channel=1 --pga 0.3 --json");
     const json_t *records = json_object_get(o, "records"), *unreadable = json_object_get(o, "unreadable");
     assert_int_equal(json_array_size(records) + json_array_size(unreadable), n_files("tests/motion"));
     for (size_t i = 0; i + 1 < json_array_size(records); i++)
@@ -170,14 +171,14 @@ TEST(a_design_is_evaluated_on_every_motion_of_a_folder)
     const json_t *one = json_array_get(unreadable, at);
     assert_non_null(strstr(json_string_value(json_object_get(one, "reason")), "irregular.csv:26: time 0.24 s breaks"));
     json_decref(o);
-    char *table = output_of("evaluate @/threads-1 --design knee --record tests/motion --channel 1");
+    char *table = output_of("evaluate @/threads-1 --design knee --record tests/motion --set motion.channel=1");
     assert_non_null(strstr(table, "\none.knet "));
     assert_non_null(strstr(table, "  no core "));
     assert_non_null(strstr(table, "not read: tests/motion/irregular.csv:26"));
     free(table);
     expect(65, "holds no ground motion that can be read", "evaluate @/threads-1 --design knee --record configs/sac20");
     expect(65, "not read: tests/motion/one.knet: motion.channel '99' is not exactly one of its channels",
-           "evaluate @/threads-1 --design knee --record tests/motion --channel 99");
+           "evaluate @/threads-1 --design knee --record tests/motion --set motion.channel=99");
     char *empty = in_place("empty");
     assert_int_equal(mkdir(empty, 0777), 0);
     free(empty);
@@ -227,21 +228,18 @@ TEST(a_run_that_is_killed_leaves_its_last_finished_generation)
     free(output_of("evaluate @/killed --design knee --record builtin:elcentro-like --set sim.duration_s=4"));
 }
 
-/* The first simulations of the second run are the front of the first one; a choice of three begins with the knee. */
-TEST(a_search_begins_with_given_designs_and_a_front_is_thinned)
+/* The first simulations of the second run are the front of the first one. */
+TEST(a_search_begins_with_given_designs)
 {
     write_in_place("sphere.ini", DTLZ2_INI(4, 3) "[search]\nmax_evals = 45\ninitial = 30\npopulation = 12\n");
     free(output_of("optimize @/sphere.ini --out @/earlier"));
     free(output_of("optimize @/sphere.ini --out @/later --set search.start=@/earlier"));
     free(output_of("export @/later --all --csv @/all.csv"));
-    free(output_of("export @/earlier --select 3 --csv @/three.csv"));
-    char *front_path = in_place("earlier/front.csv"), *all_path = in_place("all.csv"),
-         *three_path = in_place("three.csv");
+    char *front_path = in_place("earlier/front.csv"), *all_path = in_place("all.csv");
     char *all, *line;
     size_t length;
-    Table front, three;
+    Table front;
     CHECK_OK(table_read(&front, front_path, 1, &err), &err);
-    CHECK_OK(table_read(&three, three_path, 1, &err), &err);
     CHECK_OK(file_read(all_path, FILE_LARGEST, &all, &length, &err), &err);
     line = strchr(all, '\n') + 1;
     for (size_t i = 0; i < front.n_rows; i++, line = strchr(line, '\n') + 1) {
@@ -249,23 +247,15 @@ TEST(a_search_begins_with_given_designs_and_a_front_is_thinned)
         assert_int_equal(sscanf(line, "%*d,%*d,%*[a-z],ok,,%lf", &x), 1);
         assert_same_number(x, front.values[i * front.n_cols + 1]);
     }
-    assert_int_equal(three.n_rows, 3);
-    char *said = output_of("choose @/earlier"), knee[40];
-    snprintf(knee, sizeof knee, " %.0f ", three.values[0]);
-    assert_non_null(strstr(said, knee));
     free(output_of(
         "polish @/earlier --design knee --improve f1 --keep f1 --max-evals 60")); /* a gain enters the archive */
     free(output_of("export @/earlier --all --csv @/polished-too.csv"));
     expect_file("polished-too.csv", ",polished,ok,");
     expect(66, "search.start", "optimize @/sphere.ini --out @/no --set search.start=@/nothing");
-    expect(2, "--select: 'many' is not a number from 1", "export @/earlier --select many --csv -");
-    free(said);
     free(all);
     table_free(&front);
-    table_free(&three);
     free(front_path);
     free(all_path);
-    free(three_path);
 }
 
 TEST(a_worker_gives_the_same_run_at_any_number_of_threads)

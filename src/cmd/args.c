@@ -1,15 +1,11 @@
 #include "cmd/args.h"
 
-#include <limits.h>
-
 #include "base/linalg.h"
 #include "cmd/outputs.h"
 #include "store/folder.h"
 #include "settings/settings.h"
 #include "store/run_read.h"
 #include "study/merged.h"
-
-enum { OPTIONS_MAX = 32 };
 
 Status args_unknown(const char *what, const char *word, const char *const known[], int n, const char *where, Err *err)
 {
@@ -45,55 +41,37 @@ Status args_moved(const Args *args, RecordPaths *moved, Err *err)
     return STATUS_OK;
 }
 
-static Status find_option(const Command *c, const char *word, size_t length, const ArgOption **found, Err *err)
-{
-    const char *names[OPTIONS_MAX];
-    char name[64], where[80];
-    int n = 0;
-    snprintf(name, sizeof name, "%.*s", (int)length, word);
-    for (const ArgOption *o = c->options; o->name && n < OPTIONS_MAX - 1; o++) {
-        names[n++] = o->name;
-        *found = o;
-        if (strcmp(o->name, name) == 0)
-            return STATUS_OK;
-    }
-    names[n++] = "--help";
-    snprintf(where, sizeof where, "`%s %s --help`", program_of(c), c->name);
-    return args_unknown("option", name, names, n, where, err);
-}
-
 static Status take_option(Args *args, int argc, char *const argv[], int *i, Err *err)
 {
-    const char *word = argv[*i];
-    const size_t length = strcspn(word, "=");
-    const ArgOption *o = NULL;
-    TRY(find_option(args->command, word, length, &o, err));
-    Given given = {o, NULL};
-    if (!o->value && word[length])
+    const Command *c = args->command;
+    const ArgOption *o = c->options;
+    const char *word = argv[*i], *behind = strchr(word, '='), *names[OPTIONS_MAX];
+    char name[64], where[80];
+    int n = 0;
+    snprintf(name, sizeof name, "%.*s", (int)strcspn(word, "="), word);
+    for (; o->name && strcmp(o->name, name) != 0; o++)
+        names[n++] = o->name;
+    if (!o->name) {
+        names[n++] = "--help";
+        snprintf(where, sizeof where, "`%s %s --help`", program_of(c), c->name);
+        return args_unknown("option", name, names, n, where, err);
+    }
+    if (!o->value && behind)
         return misused(err, "%s takes no value", o->name);
-    if (o->value && word[length])
-        given.value = word + length + 1;
-    else if (o->value && *i + 1 < argc && strncmp(argv[*i + 1], "--", 2) != 0)
-        given.value = argv[++*i];
-    if (o->value && (!given.value || !given.value[0]))
+    if (o->value && !behind && *i + 1 < argc && strncmp(argv[*i + 1], "--", 2) != 0)
+        behind = argv[++*i];
+    else if (behind)
+        behind++;
+    if (o->value && (!behind || !*behind))
         return misused(err, "%s needs a value: %s %s", o->name, o->name, o->value);
     if (!o->many && args_has(args, o->name))
         return misused(err, "%s is given twice", o->name);
-    args->given[args->n_given++] = given;
+    args->given[args->n_given++] = (Given){o, behind};
     return STATUS_OK;
 }
 
 /* A run is its folder; who names the database in it means that. */
-static Status take_run_folder(Args *args, int i, Err *err)
-{
-    char path[PATH_MAX];
-    if (snprintf(path, sizeof path, "%s", args->operands[i]) >= (int)sizeof path || !run_drop_name(path))
-        return STATUS_OK;
-    args->operands[i] = args->folders[i] = strdup(path);
-    return args->folders[i] ? STATUS_OK : fail_memory(err, 1, "a path");
-}
-
-static Status take_operand(Args *args, const char *word, Err *err)
+static Status take_operand(Args *args, char *word, Err *err)
 {
     const Command *c = args->command;
     if (!c->operand)
@@ -103,8 +81,9 @@ static Status take_operand(Args *args, const char *word, Err *err)
                        args->operand);
     if (!word[0])
         return misused(err, "%s %s: the %s is an empty word", program_of(c), c->name, c->operand);
+    if (strstr(c->operand, "RUN"))
+        run_drop_name(word);
     args->operands[args->n_operands++] = word;
-    TRY(strstr(c->operand, "RUN") ? take_run_folder(args, args->n_operands - 1, err) : STATUS_OK);
     args->operand = args->operands[0];
     return STATUS_OK;
 }
@@ -124,7 +103,6 @@ Status args_parse(Args *args, const Command *command, int argc, char *const argv
         return STATUS_OK;
     TRY_ROOM(args->given, argc + 1, "options", err);
     TRY_ROOM(args->operands, argc + 1, "options", err);
-    TRY_ROOM(args->folders, argc + 1, "options", err);
     for (int i = 0; i < argc; i++)
         TRY(argv[i][0] == '-' && argv[i][1] ? take_option(args, argc, argv, &i, err)
                                             : take_operand(args, argv[i], err));
@@ -145,28 +123,21 @@ void args_place(const Args *args, Err *err)
         settings_place(args->operand, is_given, args, err);
 }
 
-/* The run of the operand, or several as one. */
-static Status read_runs(const Args *args, Run *run, Err *err)
-{
-    if (args->n_operands == 1)
-        return run_read(run, args->operand, err);
-    TRY(merged_read(run, (size_t)args->n_operands, args->operands, err));
-    for (int i = 1; i < args->n_operands; i++)
-        fprintf(stderr, "note: the ids of %s have %ld added\n", args->operands[i], i * run->id_step);
-    return STATUS_OK;
-}
-
 Status command_run(const Args *args, Err *err)
 {
     Run run;
-    const Status own = args->command->run ? args->command->run(args, err) : STATUS_OK;
+    const Command *c = args->command;
+    const Status own = c->run ? c->run(args, err) : STATUS_OK;
     if (own == STATUS_BAD_DATA || own == STATUS_MISSING)
         args_place(args, err);
     TRY(own);
-    if (!args->command->run_of)
+    if (!c->run_of)
         return STATUS_OK;
-    TRY(read_runs(args, &run, err));
-    const Status status = args->command->run_of(args, &run, err);
+    TRY(args->n_operands == 1 ? run_read(&run, args->operand, err)
+                              : merged_read(&run, (size_t)args->n_operands, args->operands, err));
+    for (int i = 1; i < args->n_operands; i++)
+        fprintf(stderr, "note: the ids of %s have %ld added\n", args->operands[i], i * run.id_step);
+    const Status status = c->run_of(args, &run, err);
     run_free(&run);
     return status;
 }
@@ -243,20 +214,8 @@ int args_gives(const Args *args, const char *key)
 void args_free(Args *args)
 {
     free(args->given);
-    for (int i = 0; i < args->n_operands; i++)
-        free(args->folders[i]);
     free(args->operands);
-    free(args->folders);
     memset(args, 0, sizeof *args);
-}
-
-static Status apply_one(const Given *g, Settings *s, Err *err)
-{
-    Err why = {0};
-    if (strcmp(g->option->name, "--set") == 0)
-        return settings_set(s, g->value, err);
-    const Status status = g->option->setting ? settings_put(s, g->option->setting, g->value, &why) : STATUS_OK;
-    return status == STATUS_OK ? STATUS_OK : fail(err, status, "%s: %s", g->option->name, why.text);
 }
 
 static void count_fault(FILE *faults, int *n_faults, const char *text)
@@ -270,20 +229,23 @@ static void count_fault(FILE *faults, int *n_faults, const char *text)
 Status args_apply(const Args *args, Settings *s, FILE *faults, int *n_faults, Err *err)
 {
     Status first = STATUS_OK;
-    for (int i = 0; i < args->n_given; i++) {
-        Err e = {0};
-        const Status status = apply_one(&args->given[i], s, &e);
+    for (int i = 0; i < args->n_given && (faults || first == STATUS_OK); i++) {
+        const Given *g = &args->given[i];
+        const char *key = g->option->setting;
+        Err why = {0}, e = {0};
+        Status status = STATUS_OK;
+        if (strcmp(g->option->name, "--set") == 0)
+            status = settings_set(s, g->value, &e);
+        else if (key && (status = settings_put(s, key, g->value, &why)) != STATUS_OK)
+            fail(&e, status, "%s: %s", g->option->name, why.text);
         if (status == STATUS_OK)
             continue;
         count_fault(faults, n_faults, e.text);
         if (first == STATUS_OK)
             first = fail(err, status, "%s", e.text);
-        if (!faults)
-            break;
     }
-    if (first != STATUS_OK || faults) /* with faults: a check, which looks at all and writes nothing */
-        return first;
-    return outputs_spare(args, s, err);
+    /* with faults: a check, which looks at all and writes nothing */
+    return first != STATUS_OK || faults ? first : outputs_spare(args, s, err);
 }
 
 Status args_settings(const Args *args, Settings *s, FILE *faults, int *n_faults, Err *err)

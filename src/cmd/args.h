@@ -65,9 +65,6 @@ Status args_apply(const Args *args, Settings *s, FILE *faults, int *n_faults, Er
 #define OPTION_TEXT \
     SETTING("--text", "FORM", "motion.text", "plain text: skip=5,columns=time:1,value:3,per_line=8,pairs=yes,factor=2")
 #define OPTIONS_MOTION OPTION_RECORD, OPTION_PGA, OPTION_UNIT, OPTION_TEXT
-#define OPTION_CHANNEL \
-    SETTING("--channel", "NAME", "motion.channel", "component, by name or number, of a file with several")
 #define OPTION_JSON SWITCH("--json", "everything, as JSON, on standard output")
 #define OPTION_CSV VALUE("--csv", "FILE", "the table as CSV into FILE; -: standard output")
-#define OPTION_END {.name = NULL}
 /* clang-format on */

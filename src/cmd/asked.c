@@ -54,36 +54,12 @@ static void put_columns(json_t *o, const Schema *s, const Evaluation *e, int wit
 
 /* -- simulate ------------------------------------------------------------------------------------------------------ */
 
-static Status show(const Args *args, const Schema *s, const Designs *designs, const EvaluationTable *t, Err *err)
-{
-    const int as_json = args_has(args, "--json");
-    Document d = {.rows = json_array()};
-    for (size_t i = 0; i < t->n; i++)
-        put_columns(json_put(figures_row(d.rows), "design=%ld", design_number(designs, i)), s, &t->row[i], as_json);
-    d.data = json_incref(d.rows);
-    json_array_extend(document_table(&d), d.rows);
-    TRY(document_give(&d, args, err));
-    return t->n > 1 || t->row[0].outcome == OUTCOME_OK
-               ? STATUS_OK
-               : fail(err, STATUS_INTERNAL, "the simulation failed: %s", t->row[0].reason);
-}
-
-static Status simulate(const Args *args, Adapter *a, Err *err)
-{
-    Designs d;
-    EvaluationTable t = {0};
-    Status status = designs_of_problem(&d, args_value(args, "--design"), adapter_schema(a), err);
-    THEN(status, ask(a, d.n, d.x, &t, err));
-    THEN(status, show(args, adapter_schema(a), &d, &t, err));
-    evaluation_table_free(&t);
-    design_free(&d);
-    return status;
-}
-
 Status asked_simulate(const Args *args, const Settings *s, Err *err)
 {
     Adapter *a;
     Settings any = *s;
+    Designs designs;
+    EvaluationTable t = {0};
     any.problem.constraints = ASKED_CONSTRAINTS(s);
     for (int i = 0; i < args->n_given; i++)
         if (!strstr("--design --csv --json --set", args->given[i].option->name))
@@ -92,7 +68,21 @@ Status asked_simulate(const Args *args, const Settings *s, Err *err)
     if (strcmp(args_value(args, "--design"), "none") == 0)
         return bad_data(err, "problem.kind: without a design only problem.kind = tower can be simulated");
     TRY(adapter_open(&a, &any, err));
-    const Status status = simulate(args, a, err);
+    Status status = designs_of_problem(&designs, args_value(args, "--design"), adapter_schema(a), err);
+    THEN(status, ask(a, designs.n, designs.x, &t, err));
+    if (status == STATUS_OK) {
+        Document d = {.rows = json_array()};
+        for (size_t i = 0; i < t.n; i++)
+            put_columns(json_put(figures_row(d.rows), "design=%ld", design_number(&designs, i)), adapter_schema(a),
+                        &t.row[i], args_has(args, "--json"));
+        d.data = json_incref(d.rows);
+        json_array_extend(document_table(&d), d.rows);
+        status = document_give(&d, args, err);
+        if (t.n == 1 && t.row[0].outcome != OUTCOME_OK)
+            THEN(status, fail(err, STATUS_INTERNAL, "the simulation failed: %s", t.row[0].reason));
+    }
+    evaluation_table_free(&t);
+    design_free(&designs);
     adapter_close(a);
     return status;
 }

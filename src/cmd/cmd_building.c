@@ -29,15 +29,6 @@ static double share(double gamma, double mass)
     return gamma * gamma / mass;
 }
 
-/* Of the core, that the ground moves: all but half of its first storey's. */
-static double moved_mass(const Model *m)
-{
-    double sum = 0;
-    for (int i = 0; i < m->b.n; i++)
-        sum += m->core.gamma[i] * m->core.gamma[i];
-    return sum;
-}
-
 /* ---- what is asked for ---------------------------------------------------------------------------------------- */
 
 static Status make_core(const Args *args, Model *m, Err *err)
@@ -88,46 +79,13 @@ static Status open_model(const Args *args, Model *m, Err *err)
 
 /* ---- answers -------------------------------------------------------------------------------------------------- */
 
-/* Share of the mass that is not on the floors, below which nothing is said of it. */
-static const double BETWEEN_MIN = 1e-3;
-
-static void say_building(Document *d, const Model *m)
-{
-    const double mass = building_mass(&m->b);
-    double between = mass;
-    for (int j = 0; j < m->b.n; j++)
-        between -= building_floor_mass(&m->b, j);
-    document_say(d, "p", "%s: %d floor%s, %.6g t, %.4g MN", m->s.building.model, m->b.n, m->b.n == 1 ? "" : "s",
-                 1e-3 * mass, 1e-6 * GRAVITY * mass);
-    if (between > BETWEEN_MIN * mass)
-        document_say(d, "p", "%.6g t of it are between the floors", 1e-3 * between);
-    if (m->frame.n[FRAME_NODES])
-        document_say(d, "p", "plane frame of %d nodes, %d elements, %d sections, %d ties", m->frame.n[FRAME_NODES],
-                     m->frame.n[FRAME_ELEMENTS], m->frame.n[FRAME_SECTIONS], m->frame.n_ties);
-}
-
-static void say_core(Document *d, const Model *m)
-{
-    const double bending = m->by_theory[CORE_EULER_BERNOULLI], shearing = m->by_theory[CORE_TIMOSHENKO];
-    char walls[80] = " (effective section)";
-    if (core_section(&m->s.core) != CORE_EFFECTIVE)
-        snprintf(walls, sizeof walls, ", thickness %g to %g mm", 1e3 * m->design.t_base, 1e3 * m->design.t_top);
-    if (neighbour_is_given(&m->s.core))
-        document_say(d, "p", "neighbour of %.6g t, %d floors, %s; first mode: %.4g Hz", 1e-3 * m->core.mass_kg,
-                     m->core.top, m->s.core.model, m->core.omega[0] / (2 * M_PI));
-    else
-        document_say(d, "p",
-                     "core of %.6g t%s, %s; first mode: %.4g Hz bending alone, %.4g Hz (%+.2g %%) with shear and "
-                     "rotary inertia",
-                     1e-3 * m->core.mass_kg, walls, core_theory_word(m->s.core.theory), bending, shearing,
-                     100 * (shearing / bending - 1));
-}
-
 /* Floors, then modes, in the order of both; and what stands beside them of a core. */
 static void add_rows(const Model *m, json_t *floors, json_t *modes, json_t *cores)
 {
     const Building *b = &m->b;
-    double z = 0;
+    double z = 0, moved = 0; /* mass of the core that the ground moves: all but half of its first storey's */
+    for (int j = 0; j < b->n; j++)
+        moved += m->core.gamma[j] * m->core.gamma[j];
     for (int j = 0; j < b->n; j++) {
         z += b->storey_m[j];
         json_array_append_new(floors, json_of("floor=%d z_m=%g storey_m=%g mass_kg=%g", j + 1, z, b->storey_m[j],
@@ -138,29 +96,23 @@ static void add_rows(const Model *m, json_t *floors, json_t *modes, json_t *core
         if (m->has_core)
             json_array_append_new(cores, json_of("core_hz=%g core_mass_share=%g zero_gap_hz=%g",
                                                  j < m->core.top ? m->core.omega[j] / (2 * M_PI) : NAN,
-                                                 share(m->core.gamma[j], moved_mass(m)), m->zero_gap[j]));
+                                                 share(m->core.gamma[j], moved), m->zero_gap[j]));
     }
 }
 
-/* Shape of a mode on the floors, its largest 1. */
-static json_t *json_shape(const BuildingModel *b, int n, int mode)
-{
-    double largest = 0, shape[FLOORS_MAX];
-    for (int j = 0; j < n; j++)
-        if (fabs(b->phi[j * b->n + mode]) > fabs(largest))
-            largest = b->phi[j * b->n + mode];
-    for (int j = 0; j < n; j++)
-        shape[j] = b->phi[j * b->n + mode] / largest;
-    return json_numbers(n, shape);
-}
-
-/* Mode by mode. */
+/* Mode by mode; the shapes on the floors have 1 as their largest. */
 static void put_core(json_t *o, const Model *m, const json_t *modes, const json_t *cores)
 {
     const BuildingModel *b = &m->b.model;
     json_t *shapes = json_array(), *horizontal = json_array();
     for (int i = 0; i < m->b.n; i++) {
-        json_array_append_new(shapes, json_shape(b, m->b.n, i));
+        double largest = 0, shape[FLOORS_MAX];
+        for (int j = 0; j < m->b.n; j++)
+            if (fabs(b->phi[j * b->n + i]) > fabs(largest))
+                largest = b->phi[j * b->n + i];
+        for (int j = 0; j < m->b.n; j++)
+            shape[j] = b->phi[j * b->n + i] / largest;
+        json_array_append_new(shapes, json_numbers(m->b.n, shape));
         json_array_append_new(horizontal, json_boolean(b->like[i] >= 0));
     }
     json_put(o,
@@ -171,6 +123,36 @@ static void put_core(json_t *o, const Model *m, const json_t *modes, const json_
              m->by_theory[CORE_EULER_BERNOULLI], json_column(modes, "hz"), json_column(modes, "mass_share"),
              json_column(modes, "damping"), shapes, horizontal, json_column(cores, "core_hz"),
              json_column(cores, "core_mass_share"), json_column(cores, "zero_gap_hz"));
+}
+
+static void say_all(Document *d, const Model *m)
+{
+    static const double BETWEEN_MIN = 1e-3; /* share of the mass that is not on the floors */
+    const CoreOptions *core = &m->s.core;
+    const double bending = m->by_theory[CORE_EULER_BERNOULLI], shearing = m->by_theory[CORE_TIMOSHENKO];
+    const double mass = building_mass(&m->b);
+    double between = mass;
+    char walls[80] = " (effective section)";
+    for (int j = 0; j < m->b.n; j++)
+        between -= building_floor_mass(&m->b, j);
+    document_say(d, "%s: %d floor%s, %.6g t, %.4g MN", m->s.building.model, m->b.n, m->b.n == 1 ? "" : "s", 1e-3 * mass,
+                 1e-6 * GRAVITY * mass);
+    if (between > BETWEEN_MIN * mass)
+        document_say(d, "%.6g t of it are between the floors", 1e-3 * between);
+    if (m->frame.n[FRAME_NODES])
+        document_say(d, "plane frame of %d nodes, %d elements, %d sections, %d ties", m->frame.n[FRAME_NODES],
+                     m->frame.n[FRAME_ELEMENTS], m->frame.n[FRAME_SECTIONS], m->frame.n_ties);
+    if (core_section(core) != CORE_EFFECTIVE)
+        snprintf(walls, sizeof walls, ", thickness %g to %g mm", 1e3 * m->design.t_base, 1e3 * m->design.t_top);
+    if (m->has_core && neighbour_is_given(core))
+        document_say(d, "neighbour of %.6g t, %d floors, %s; first mode: %.4g Hz", 1e-3 * m->core.mass_kg, m->core.top,
+                     core->model, m->core.omega[0] / (2 * M_PI));
+    else if (m->has_core)
+        document_say(d,
+                     "core of %.6g t%s, %s; first mode: %.4g Hz bending alone, %.4g Hz (%+.2g %%) with shear and "
+                     "rotary inertia",
+                     1e-3 * m->core.mass_kg, walls, core_theory_word(core->theory), bending, shearing,
+                     100 * (shearing / bending - 1));
 }
 
 static Status show(const Args *args, const Model *m, Err *err)
@@ -187,11 +169,9 @@ static Status show(const Args *args, const Model *m, Err *err)
                   .width = 1100};
     if (args_has(args, "--svg"))
         TRY(building_drawing(&m->b, m->frame.n[FRAME_NODES] ? &m->frame : NULL, 10, &d.drawn, err));
-    say_building(&d, m);
-    if (m->has_core) {
-        say_core(&d, m);
+    say_all(&d, m);
+    if (m->has_core)
         put_core(d.data, m, modes, cores);
-    }
     json_t *table = document_table(&d);
     json_array_foreach(floors, j, row)
     {
@@ -216,14 +196,6 @@ static Status run(const Args *args, Err *err)
     return status;
 }
 
-static const ArgOption OPTIONS[] = {
-    VALUE("--design", "FILE", "with CONFIG: a design that has the core's thickness: " DESIGN_WORDS),
-    VALUE("--svg", "FILE", "draw it: frame or storeys to scale, first ten mode shapes"),
-    OPTION_JSON,
-    OPTION_SET,
-    OPTION_END,
-};
-
 const Command CMD_BUILDING = {
     .name = "building",
     .group = GROUP_PREPARE,
@@ -238,7 +210,13 @@ const Command CMD_BUILDING = {
         "For a CONFIG it also prints the modes of the core and those of building and core rigidly connected\n"
         "(zero gap). Without --design the core is 12 mm thick in the first storey and 6.4 mm in the last.\n"
         "With building.modes it lists the lowest modes of the fuller model, including vertical ones.",
-    .options = OPTIONS,
+    .options =
+        {
+            VALUE("--design", "FILE", "with CONFIG: a design that has the core's thickness: " DESIGN_WORDS),
+            VALUE("--svg", "FILE", "draw it: frame or storeys to scale, first ten mode shapes"),
+            OPTION_JSON,
+            OPTION_SET,
+        },
     .is_alone = 1,
     .run = run,
 };

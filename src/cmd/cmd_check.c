@@ -62,23 +62,17 @@ static void fault(Check *c, const char *text)
     json_array_append_new(c->faults, json_string(text));
 }
 
-/* Does the text begin with "section.key:"? */
-static int names_setting(const char *text)
-{
-    const char *key;
-    for (int i = 0; (key = settings_key(i)); i++)
-        if (strncmp(text, key, strlen(key)) == 0 && text[strlen(key)] == ':')
-            return 1;
-    return 0;
-}
-
-/* key: of a message that names no setting. */
+/* Takes a fault; 1: there is none. key: of a message that does not begin with "section.key:". */
 static int note(Check *c, Status status, const char *key, const Err *e)
 {
     Err placed = *e;
+    const char *known;
+    int has_key = 0;
     if (status == STATUS_OK)
         return 1;
-    if (!names_setting(e->text))
+    for (int i = 0; !has_key && (known = settings_key(i)); i++)
+        has_key = strncmp(e->text, known, strlen(known)) == 0 && e->text[strlen(known)] == ':';
+    if (!has_key)
         fail(&placed, status, "%s: %s", key, e->text);
     args_place(c->args, &placed);
     fault(c, placed.text);
@@ -92,51 +86,28 @@ static void warn(const char *key, const char *text, void *user)
     json_array_append_new(c->warnings, json_of("key=%s text=%s", key, text));
 }
 
-/* The faults of a settings file, one per line. */
-static void take_lines(Check *c, char *lines)
-{
-    for (char *line; (line = strsep(&lines, "\n"));)
-        if (*line)
-            fault(c, line);
-}
-
+/* Every fault of the settings file is a line of its own. */
 static Status read_settings(const Args *args, Check *c, Settings *s, Err *err)
 {
-    char *lines = NULL;
+    char *lines = NULL, *line;
     size_t length = 0;
     int n = 0;
     FILE *f = text_open(&lines, &length);
     if (!f)
         return fail_memory(err, 1, "faults");
-    const Status status = args_settings(args, s, f, &n, err);
-    const int is_whole = text_close(f) == 0;
-    if (!is_whole || (status != STATUS_OK && n == 0)) { /* no faults of settings: they could not be read */
-        free(lines);
-        return is_whole ? status : fail_memory(err, 1, "faults");
-    }
-    take_lines(c, lines);
+    Status status = args_settings(args, s, f, &n, err);
+    if (text_close(f) != 0)
+        status = fail_memory(err, 1, "faults");
+    else if (n > 0) /* else they could not be read */
+        status = STATUS_OK;
+    for (char *rest = lines; status == STATUS_OK && (line = strsep(&rest, "\n"));)
+        if (*line)
+            fault(c, line);
     free(lines);
-    return STATUS_OK;
+    return status;
 }
 
 /* ---- building, core, motion ----------------------------------------------------------------------------------- */
-
-static int open_building(Check *c, CheckedScene *p)
-{
-    Err e = {0};
-    return note(c, building_load(&p->building, &p->s->building, &e), "building.model", &e);
-}
-
-static int open_motion(Check *c, CheckedScene *p)
-{
-    Err e = {0};
-    Status status = motion_open(&p->motion, &p->s->motion, &e);
-    if (status == STATUS_OK) {
-        p->recorded_g = motion_peak(&p->motion) / GRAVITY;
-        status = motion_scale(&p->motion, &p->s->motion, &e);
-    }
-    return note(c, status, "motion.record", &e);
-}
 
 /* Those of the box, or the first ones of --design. */
 static int choose_designs(Check *c, CheckedScene *p, const char *path)
@@ -162,39 +133,31 @@ static int choose_designs(Check *c, CheckedScene *p, const char *path)
     return 1;
 }
 
-/* Width of a plane frame [m], else the height of the building, whose plan is not known. */
-static double plan_width(const CheckedScene *p, const char **what)
+/* Is there room for a core that is wider than a share of the building, of a plane frame's width, else of its height,
+ * for then its plan is not known? */
+static void ask_about_plan(Check *c, const CheckedScene *p)
 {
-    Frame f = {0};
+    static const double SHARE_MAX = 0.4;
+    const BuildingOptions *b = &p->s->building;
+    const double side = p->design.side > 0 ? p->design.side : p->s->core.width_m;
     double least = INFINITY, most = -INFINITY;
-    *what = "width";
-    if (frame_is(p->s->building.model) && frame_read(&f, &p->s->building, &(Err){0}) == STATUS_OK)
+    char text[160];
+    Frame f = {0};
+    if (frame_is(b->model) && frame_read(&f, b, &(Err){0}) == STATUS_OK)
         for (int i = 0; i < f.n[FRAME_NODES]; i++) {
             least = fmin(least, f.node[i].x);
             most = fmax(most, f.node[i].x);
         }
     frame_free(&f);
-    if (most > least)
-        return most - least;
-    *what = "height (its plan is not known)";
-    return p->summary.height_m;
-}
-
-/* Share of the plan's width that is asked about. */
-static const double PLAN_SHARE_MAX = 0.4;
-
-static void ask_about_plan(Check *c, const CheckedScene *p)
-{
-    const char *what;
-    const double side = p->design.side > 0 ? p->design.side : p->s->core.width_m, width = plan_width(p, &what);
-    char text[160];
-    if (core_section(&p->s->core) == CORE_EFFECTIVE || !(side > PLAN_SHARE_MAX * width))
+    const double width = most > least ? most - least : p->summary.height_m;
+    if (core_section(&p->s->core) == CORE_EFFECTIVE || !(side > SHARE_MAX * width))
         return;
     snprintf(text, sizeof text, "%.4g m is %.0f %% of the building's %s of %.4g m: is there room for such a core?",
-             side, 100 * side / width, what, width);
+             side, 100 * side / width, most > least ? "width" : "height (its plan is not known)", width);
     warn("core.width_m", text, c);
 }
 
+/* What the scene is, and what is implausible in it. */
 static int summarise(Check *c, CheckedScene *p)
 {
     Err e = {0};
@@ -218,13 +181,9 @@ static int summarise(Check *c, CheckedScene *p)
                  p->s->sim.duration_s, motion_duration(&p->motion));
         warn("sim.duration_s", text, c);
     }
-    return 1;
-}
-
-static void scene_json(Check *c, const CheckedScene *p)
-{
-    const SceneSummary *f = &p->summary;
     const Settings *s = p->s;
+    const SceneSummary *f = &p->summary;
+    const Motion *m = &p->motion;
     size_t n_periods = 0;
     while (n_periods < 3 && f->period_s[n_periods] > 0)
         n_periods++;
@@ -240,9 +199,9 @@ static void scene_json(Check *c, const CheckedScene *p)
                      f->core_hz, f->clamped_hz, f->timoshenko_hz, f->euler_bernoulli_hz, f->core_modes_within),
              json_of("record=%s samples=%ld duration_s=%g recorded_peak_g=%g peak_g=%g scale=%g stretch=%g "
                      "content_hz=%g processed=%s",
-                     s->motion.record, p->motion.n, motion_duration(&p->motion), p->recorded_g,
-                     motion_peak(&p->motion) / GRAVITY, p->motion.scale, s->motion.stretch, f->content_hz,
-                     p->motion.processed));
+                     s->motion.record, m->n, motion_duration(m), p->recorded_g, motion_peak(m) / GRAVITY, m->scale,
+                     s->motion.stretch, f->content_hz, m->processed));
+    return 1;
 }
 
 /* ---- the study ------------------------------------------------------------------------------------------------ */
@@ -256,50 +215,17 @@ static void scene_json(Check *c, const CheckedScene *p)
 static const double SURROGATE_S = 0.9e-3, VARIABLES = 22, DEVICES_S = 0.045, YIELDING = 2;
 enum { CLOSING_SIMULATIONS = 24, NAMED_SIMULATIONS = 12 };
 
-/* Designs that a study looks at: of those that are screened one in SCREENED_PER_FINISHED is simulated to its end. */
-static double designs_of(const Settings *s)
+/* [s] beside the simulations of a search, for every design that it looks at: of those that are screened one in
+ * SCREENED_PER_FINISHED is simulated to its end. */
+static double search_seconds(const Settings *s, const Problem *p)
 {
     const size_t records = (size_t)suite_count(&s->motion);
     const double part = s->search.fidelity == FIDELITY_RECORDS ? (double)race_first(records) / (double)records
                                                                : 1.0 / (double)s->sim.replicates;
     const double each = settings_screens(s) ? part + (1 - part) / SCREENED_PER_FINISHED : 1;
-    return (double)s->search.max_evals / each;
-}
-
-/* [s] beside the simulations of a search. */
-static double search_seconds(const Settings *s, const Problem *p)
-{
     const double growth = sqrt((double)p->n_var / VARIABLES), outputs = (double)(p->n_obj + p->n_con);
-    return s->search.surrogate == SURROGATE_OFF ? 0 : SURROGATE_S * growth * outputs * designs_of(s);
-}
-
-/* Wall times [s] of a study: search and baselines beside the simulations, of each_s, and all of it. */
-static void put_times(json_t *study, const CheckedScene *p, const Problem *problem, long simulations, long threads,
-                      double each_s)
-{
-    const SearchOptions *o = &p->s->search;
-    const double n_records = (double)simulations / (double)(o->max_evals * p->s->sim.replicates);
-    const double named = named_are_known(p->s) ? NAMED_SIMULATIONS * (double)(problem->n_obj + 1 + NAMED_SPREAD) : 0;
-    const double all = (double)simulations * (o->polish > 0 ? 1.1 : 1) + (CLOSING_SIMULATIONS + named) * n_records;
-    const double search_s = search_seconds(p->s, problem);
-    const double baselines_s = DEVICES_S * p->building.n * n_records * (p->building.yields ? YIELDING : 1);
-    json_put(study, "search_s=%g baselines_s=%g seconds=%g", search_s, baselines_s,
-             all * each_s / (double)threads + search_s + baselines_s);
-}
-
-static void describe_objectives(Check *c, const Schema *schema, const char *objectives, int has_bumpers)
-{
-    const char *missing = measures_missing(&schema->order, objectives, schema->design.n_floors);
-    json_t *names = json_array();
-    for (size_t k = 0; k < schema->n_obj; k++)
-        json_array_append_new(names, json_words(schema_objective(schema, k)->name));
-    json_put(c->out, "objectives=%p", names);
-    if (schema->order.objectives >> MEASURE_BUMPER_STRAIN & 1 && !has_bumpers)
-        warn("search.objectives", "bumper_strain is 0 for every design: there is no bumper", c);
-    if (missing && strcmp(objectives, "auto") != 0)
-        warn("search.objectives", missing, c);
-    else if (missing)
-        json_put(c->out, "missing=%s", missing);
+    return s->search.surrogate == SURROGATE_OFF ? 0
+                                                : SURROGATE_S * growth * outputs * (double)s->search.max_evals / each;
 }
 
 /* Of those that collide the one in the middle by its impacts; where none does the first. */
@@ -320,7 +246,8 @@ static size_t typical_of(size_t n, const SimResult r[])
     return 0;
 }
 
-/* The designs to try are simulated once, with forces where the core stands on ground that it may lift from. */
+/* The designs to try are simulated once, with forces where the core stands on ground that it may lift from; then the
+ * wall times [s] of a study are known: of search and baselines beside the simulations, and of all. */
 static void describe_study(Check *c, CheckedScene *p, const Problem *problem)
 {
     Err e = {0};
@@ -345,15 +272,20 @@ static void describe_study(Check *c, CheckedScene *p, const Problem *problem)
     p->impacts = r[typical].impacts;
     if (foundation_lifts(&r[typical]))
         warn("core.foundation", uplift_words(&r[typical], text), c);
-    const long threads = (long)threads_wanted(s->search.threads);
-    const long records = suite_count(&s->motion);
+
+    const long threads = (long)threads_wanted(s->search.threads), records = suite_count(&s->motion);
     const long simulations = s->search.max_evals * s->sim.replicates * records;
-    json_t *study =
-        json_of("variables=%d gap_m=%p thickness_m=%p simulations=%ld threads=%ld simulation_s=%g impacts=%p",
-                p->space.n_var, json_numbers(2, s->design.gap_m.at), json_numbers(2, s->design.thickness_m.at),
-                simulations, threads, seconds, impacts);
-    put_times(study, p, problem, simulations, threads, seconds);
-    json_put(c->out, "study=%p", study);
+    const double named = named_are_known(s) ? NAMED_SIMULATIONS * (double)(problem->n_obj + 1 + NAMED_SPREAD) : 0;
+    const double all =
+        (double)simulations * (s->search.polish > 0 ? 1.1 : 1) + (CLOSING_SIMULATIONS + named) * (double)records;
+    const double search_s = search_seconds(s, problem);
+    const double baselines_s = DEVICES_S * p->building.n * (double)records * (p->building.yields ? YIELDING : 1);
+    json_put(c->out, "study=%p",
+             json_of("variables=%d gap_m=%p thickness_m=%p simulations=%ld threads=%ld simulation_s=%g impacts=%p "
+                     "search_s=%g baselines_s=%g seconds=%g",
+                     p->space.n_var, json_numbers(2, s->design.gap_m.at), json_numbers(2, s->design.thickness_m.at),
+                     simulations, threads, seconds, impacts, search_s, baselines_s,
+                     all * seconds / (double)threads + search_s + baselines_s));
 }
 
 /* A worker that says nothing that can be understood is a fault; what it says of the design may be of this one alone. */
@@ -390,8 +322,19 @@ static void open_study(Check *c, const Settings *s, CheckedScene *p)
     const Schema *schema = adapter_schema(adapter);
     note(c, tables_have_room(schema, &e), "store", &e);
     if (s->problem.kind == PROBLEM_TOWER) {
-        describe_objectives(c, schema, s->search.objectives,
-                            schema->design.n_bumpers > 0 || s->contact.bumper_stiffness_n_m > 0);
+        const char *objectives = s->search.objectives;
+        const char *missing = measures_missing(&schema->order, objectives, schema->design.n_floors);
+        const int has_bumpers = schema->design.n_bumpers > 0 || s->contact.bumper_stiffness_n_m > 0;
+        json_t *names = json_array();
+        for (size_t k = 0; k < schema->n_obj; k++)
+            json_array_append_new(names, json_words(schema_objective(schema, k)->name));
+        json_put(c->out, "objectives=%p", names);
+        if (schema->order.objectives >> MEASURE_BUMPER_STRAIN & 1 && !has_bumpers)
+            warn("search.objectives", "bumper_strain is 0 for every design: there is no bumper", c);
+        if (missing && strcmp(objectives, "auto") != 0)
+            warn("search.objectives", missing, c);
+        else if (missing)
+            json_put(c->out, "missing=%s", missing);
         if (json_array_size(c->faults) == 0)
             describe_study(c, p, adapter_problem(adapter));
     } else {
@@ -405,41 +348,24 @@ static void open_study(Check *c, const Settings *s, CheckedScene *p)
 
 /* ---- which effects it needs ----------------------------------------------------------------------------------- */
 
-static void say_ladder(Document *d, json_t *ladder)
-{
-    static const char *const UNSHOWN[] = {"kept", "setting", "with", "otherwise"};
-    json_t *rows = json_deep_copy(json_object_get(ladder, "effects")), *row;
-    size_t i;
-    json_array_foreach(rows, i, row) for (size_t k = 0; k < N_OF(UNSHOWN); k++) json_object_del(row, UNSHOWN[k]);
-    json_array_extend(document_table(d), rows);
-    document_list(d, json_incref(ladder));
-    json_decref(rows);
-}
-
-/* What was left out of: its gaps as a list, what else it has by name. */
-static json_t *ladder_design(const CheckedScene *p)
-{
-    char name[TABLE_NAME_MAX];
-    json_t *o = json_of("impacts=%ld", p->impacts);
-    if (p->space.n_gaps > 0)
-        json_put(o, "gaps_m=%p", json_numbers(p->space.n_gaps, p->x));
-    for (int j = p->space.n_gaps; j < p->space.n_var; j++) {
-        const char *word = design_word(&p->space, j, p->x[j]);
-        design_variable_name(&p->space, j, name);
-        json_object_set_new(o, name, word ? json_string(word) : json_number(p->x[j]));
-    }
-    return o;
-}
-
+/* The ladder of the design that stands for the others: its gaps as a list, what else it has by name. */
 static void climb(Check *c, const CheckedScene *p)
 {
     Err e = {0};
+    const DesignSpace *s = &p->space;
     Ladder *ladder = calloc(1, sizeof *ladder);
     const Status status = ladder ? ladder_find(p->s, p->x, LADDER_WHOLE, ladder, &e) : fail_memory(&e, 1, "a ladder");
     if (note(c, status, "--ladder", &e)) {
-        json_t *o = ladder_json(ladder);
-        json_put(o, "design=%p", ladder_design(p));
-        json_put(c->out, "ladder=%p", o);
+        json_t *design = json_of("impacts=%ld", p->impacts);
+        if (s->n_gaps > 0)
+            json_put(design, "gaps_m=%p", json_numbers(s->n_gaps, p->x));
+        for (int j = s->n_gaps; j < s->n_var; j++) {
+            char name[TABLE_NAME_MAX];
+            const char *word = design_word(s, j, p->x[j]);
+            design_variable_name(s, j, name);
+            json_object_set_new(design, name, word ? json_string(word) : json_number(p->x[j]));
+        }
+        json_put(c->out, "ladder=%p", json_put(ladder_json(ladder), "design=%p", design));
     }
     if (p->impacts == 0 && !strstr(p->s->design.variables, "links") && !strstr(p->s->design.variables, "friction"))
         warn("--ladder",
@@ -449,28 +375,33 @@ static void climb(Check *c, const CheckedScene *p)
     free(ladder);
 }
 
-/* Objectives and limits by their names: a wrong one hides neither another nor what is wrong with the scene. */
-static void check_names(Check *c, const Settings *s)
+static void check_tower(const Args *args, Check *c, const Settings *s)
 {
     Err e = {0};
+    CheckedScene p = {.s = s};
     Schema schema = {0};
     Limits limits;
     MeasureOrder order;
+
+    /* 1. Objectives and limits by their names: a wrong one hides neither another nor what is wrong with the scene. */
     Settings any = *s;
     note(c, measures_order(&order, s->search.objectives, "none", 0, &e), "search.objectives", &e);
     snprintf(any.search.objectives, sizeof any.search.objectives, "auto");
     if (schema_of(&schema, &any, 0, &(Err){0}) == STATUS_OK)
         note(c, limits_read(&limits, &schema, s->search.limits, &e), "search.limits", &e);
     schema_free(&schema);
-}
 
-static void check_tower(const Args *args, Check *c, const Settings *s)
-{
-    CheckedScene p = {.s = s};
-    check_names(c, s);
-    const int building = open_building(c, &p), motion = open_motion(c, &p);
-    if (building && motion && choose_designs(c, &p, args_value(args, "--design")) && summarise(c, &p)) {
-        scene_json(c, &p);
+    /* 2. Building and motion, each with its faults. */
+    const int has_building = note(c, building_load(&p.building, &s->building, &e), "building.model", &e);
+    Status status = motion_open(&p.motion, &s->motion, &e);
+    if (status == STATUS_OK) {
+        p.recorded_g = motion_peak(&p.motion) / GRAVITY;
+        status = motion_scale(&p.motion, &s->motion, &e);
+    }
+
+    /* 3. The scene of both, and what a study of it takes. */
+    if (note(c, status, "motion.record", &e) && has_building && choose_designs(c, &p, args_value(args, "--design")) &&
+        summarise(c, &p)) {
         if (json_array_size(c->faults) == 0)
             open_study(c, s, &p);
         if (args_has(args, "--ladder") && json_array_size(c->faults) == 0)
@@ -482,39 +413,41 @@ static void check_tower(const Args *args, Check *c, const Settings *s)
 
 /* ---- the command ---------------------------------------------------------------------------------------------- */
 
-/* What is wrong comes last, below everything else on the screen. */
-static void say_findings(const Check *c)
-{
-    size_t i;
-    json_t *found;
-    fflush(stdout);
-    json_array_foreach(c->warnings, i, found) warn_on_stderr(json_string_value(json_object_get(found, "key")),
-                                                             json_string_value(json_object_get(found, "text")), NULL);
-    json_array_foreach(c->faults, i, found) fprintf(stderr, "%s\n", json_string_value(found));
-}
-
-static void say_figures(Document *d, json_t *o)
-{
-    json_t *found = json_copy(o), *ladder = json_object_get(o, "ladder");
-    json_object_del(found, "faults");
-    json_object_del(found, "warnings");
-    json_object_del(found, "ladder");
-    document_list(d, found);
-    if (ladder)
-        say_ladder(d, ladder);
-}
-
 static Status give(const Args *args, Check *c, Err *err)
 {
+    static const char *const APART[] = {"faults", "warnings", "ladder"};
+    static const char *const UNSHOWN[] = {"kept", "setting", "with", "otherwise"}; /* of an effect */
     const int faults = (int)json_array_size(c->faults), warnings = (int)json_array_size(c->warnings);
     Document d = {.data = json_incref(c->out)};
-    say_figures(&d, c->out);
+    json_t *figures = json_copy(c->out), *ladder = json_object_get(c->out, "ladder"), *found;
+    size_t i;
+
+    /* 1. The figures, in lines; of a ladder its effects in a table. */
+    for (size_t k = 0; k < N_OF(APART); k++)
+        json_object_del(figures, APART[k]);
+    document_list(&d, figures);
+    if (ladder) {
+        json_t *table = document_table(&d);
+        json_array_extend(table, json_object_get(ladder, "effects"));
+        json_array_foreach(table, i, found)
+        {
+            found = json_copy(found);
+            for (size_t k = 0; k < N_OF(UNSHOWN); k++)
+                json_object_del(found, UNSHOWN[k]);
+            json_array_set_new(table, i, found);
+        }
+        document_list(&d, json_incref(ladder));
+    }
     if (c->fatal == STATUS_OK || !c->as_json)
         TRY(document_give(&d, args, err));
     else
         document_free(&d);
-    if (!c->as_json)
-        say_findings(c);
+
+    /* 2. What is wrong comes last, below everything else on the screen. */
+    fflush(stdout);
+    json_array_foreach(c->as_json ? NULL : c->warnings, i, found)
+        warn_on_stderr(json_text(found, "key"), json_text(found, "text"), NULL);
+    json_array_foreach(c->as_json ? NULL : c->faults, i, found) fprintf(stderr, "%s\n", json_string_value(found));
     if (c->fatal != STATUS_OK)
         return fail(err, c->fatal, "%s: could not be checked", args->operand);
     if (faults)
@@ -552,16 +485,6 @@ static Status run(const Args *args, Err *err)
     return status;
 }
 
-static const ArgOption OPTIONS[] = {
-    OPTIONS_MOTION,
-    VALUE("--design", "FILE", "check these designs too and simulate the first five"),
-    SWITCH("--ladder", "which effects of the model a typical design needs: what leaving out each one changes"),
-    OPTION_JSON,
-    OPTION_SET,
-    SWITCH("--self", "compare this build with stored answers; exit status 70 if one differs"),
-    OPTION_END,
-};
-
 const Command CMD_CHECK = {
     .name = "check",
     .group = GROUP_PREPARE,
@@ -584,7 +507,15 @@ const Command CMD_CHECK = {
         "that are enough (docs/ladder.md).\n\n"
         "--self compares five simulations of the built-in buildings and a search on a textbook problem with\n"
         "stored answers. The tolerances hold for every instruction set.",
-    .options = OPTIONS,
+    .options =
+        {
+            OPTIONS_MOTION,
+            VALUE("--design", "FILE", "check these designs too and simulate the first five"),
+            SWITCH("--ladder", "which effects of the model a typical design needs: what leaving out each one changes"),
+            OPTION_JSON,
+            OPTION_SET,
+            SWITCH("--self", "compare this build with stored answers; exit status 70 if one differs"),
+        },
     .is_alone = 1,
     .run = run,
 };

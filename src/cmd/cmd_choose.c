@@ -149,7 +149,7 @@ static Status give(const Args *args, const Run *run, const Picks *p, Err *err)
     json_t *picks = json_array(), *variables = json_array();
     Document d = {
         .data = json_of("run=%s front=%ld within_limits=%ld designs=%p", run->folder, run->n_front, p->n_left, picks)};
-    document_say(&d, "p", "%zu of %zu designs are within the limits", p->n_left, run->n_front);
+    document_say(&d, "%zu of %zu designs are within the limits", p->n_left, run->n_front);
     json_t *table = document_table(&d);
     for (size_t i = 0; i < p->n; i++) {
         const char *name = p->pick[i].name;
@@ -173,11 +173,11 @@ static Status give(const Args *args, const Run *run, const Picks *p, Err *err)
         }
     }
     if (n_unknown > 0)
-        document_say(&d, "p", "%zu designs have no error estimate; `imtet evaluate %s --design ID` makes one",
-                     n_unknown, run->id_step > 0 ? "RUN" : text_shell(run->folder, quoted));
+        document_say(&d, "%zu designs have no error estimate; `imtet evaluate %s --design ID` makes one", n_unknown,
+                     run->id_step > 0 ? "RUN" : text_shell(run->folder, quoted));
     const size_t knee = run_knee(run);
     if (p->n > 0 && p->pick[0].row != knee)
-        document_say(&d, "p", "the knee within the limits is design %ld; %s:knee, of the whole front, is design %ld",
+        document_say(&d, "the knee within the limits is design %ld; %s:knee, of the whole front, is design %ld",
                      run->table.row[p->pick[0].row].id, run->folder, run->table.row[knee].id);
     json_array_extend(document_table(&d), variables);
     json_decref(variables);
@@ -205,18 +205,6 @@ static Status choose_of(const Args *args, const Run *run, Err *err)
     return status;
 }
 
-static const ArgOption OPTIONS[] = {
-    VALUES("--max", "NAME=VALUE",
-           "only designs whose NAME (an objective or another result) is at most VALUE; may be repeated"),
-    VALUES("--min", "NAME=VALUE", "only designs whose NAME is at least VALUE; may be repeated"),
-    VALUE("--weights", "NAME=W,...",
-          "the design with the least weighted sum of objectives, each scaled to 0 (best) .. 1 (worst)"),
-    VALUE("--reference", "NAME=VALUE,...", "the design nearest to these values (reference point)"),
-    VALUE("--csv", "FILE", "the chosen designs as rows of front.csv into FILE; -: standard output"),
-    SWITCH("--json", "the chosen designs with names, objectives and variables, as JSON on standard output"),
-    OPTION_END,
-};
-
 const Command CMD_CHOOSE = {
     .name = "choose",
     .group = GROUP_DECIDE,
@@ -230,6 +218,16 @@ const Command CMD_CHOOSE = {
         "best weighted one, and the one nearest to a reference point.\n\n"
         "Other commands accept a design by its id, RUN:417, and designs of the whole front by name: RUN:knee,\n"
         "RUN:best_j1_m.",
-    .options = OPTIONS,
+    .options =
+        {
+            VALUES("--max", "NAME=VALUE",
+                   "only designs whose NAME (an objective or another result) is at most VALUE; may be repeated"),
+            VALUES("--min", "NAME=VALUE", "only designs whose NAME is at least VALUE; may be repeated"),
+            VALUE("--weights", "NAME=W,...",
+                  "the design with the least weighted sum of objectives, each scaled to 0 (best) .. 1 (worst)"),
+            VALUE("--reference", "NAME=VALUE,...", "the design nearest to these values (reference point)"),
+            VALUE("--csv", "FILE", "the chosen designs as rows of front.csv into FILE; -: standard output"),
+            SWITCH("--json", "the chosen designs with names, objectives and variables, as JSON on standard output"),
+        },
     .run_of = choose_of,
 };

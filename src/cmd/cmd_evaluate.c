@@ -136,7 +136,7 @@ static void say_records(Document *d, const Evaluations *e, const MeasureOrder *o
             motion_free(&m);
         }
     if (e->replicates > 0)
-        document_say(d, "p", "replicates exist for the design with impacts only; the other lines are as designed");
+        document_say(d, "replicates exist for the design with impacts only; the other lines are as designed");
     json_t *table = document_table(d);
     for (size_t i = 0; i < e->n_records; i++)
         for (SceneKind c = 0; c < N_SCENES && e->record[i].readable == STATUS_OK; c++) {
@@ -153,18 +153,11 @@ static void say_records(Document *d, const Evaluations *e, const MeasureOrder *o
         }
 }
 
-/* Why records were left out. */
 static void say_refused(Document *d, const Evaluations *e)
 {
     for (size_t i = 0; i < e->n_records; i++)
         if (e->record[i].readable != STATUS_OK)
-            document_say(d, "p", "not read: %s", e->record[i].why.text);
-}
-
-/* At one intensity, but where a table for a file is all that is asked for. */
-static int has_verdict(const Args *args, const Evaluations *e)
-{
-    return !e->level && !args_has(args, "--csv");
+            document_say(d, "not read: %s", e->record[i].why.text);
 }
 
 /* With nothing but --design that of the run, else one over these records; NULL: why tells. */
@@ -197,19 +190,6 @@ static char *find_verdict(const Args *args, const Chosen *c, const Settings *s, 
     return text;
 }
 
-static void say_verdict(Document *d, const Args *args, const Chosen *c, const Settings *s, const Evaluations *e)
-{
-    Err why = {0};
-    char *text = find_verdict(args, c, s, e, &why);
-    if (c->id > 0)
-        document_say(d, "h2", "Verdict on design %ld", c->id);
-    else
-        document_say(d, "h2", "Verdict on design %s", c->word);
-    document_say(d, "p", "%s", text ? text : why.text);
-    json_put(d->data, "verdict=%s", text);
-    free(text);
-}
-
 static Status give(const Args *args, const Chosen *c, const Settings *s, const Evaluations *e, Err *err)
 {
     const MeasureOrder *order = &c->schema->order;
@@ -225,9 +205,10 @@ static Status give(const Args *args, const Chosen *c, const Settings *s, const E
         json_array_append_new(shown, json_pack("[so]", m->name, json_sprintf("%s [%s]", m->what, m->unit)));
     }
     if (c->id > 0)
-        document_say(&d, "h1", "design %ld of %s", c->id, args->operand);
+        document_add(&d, "h1", "design %ld of %s", c->id, args->operand);
     else
-        document_say(&d, "h1", "design %s by the settings of %s", c->word, args->operand);
+        document_add(&d, "h1", "design %s by the settings of %s", c->word, args->operand);
+    /* What is asked for; why records were left out; at one intensity the verdict, unless only a file is asked for. */
     if (is_fragility)
         document_fragilities(&d, &c->fragilities, e);
     else if (e->level)
@@ -235,8 +216,17 @@ static Status give(const Args *args, const Chosen *c, const Settings *s, const E
     else
         say_records(&d, e, order);
     say_refused(&d, e);
-    if (has_verdict(args, e))
-        say_verdict(&d, args, c, s, e);
+    if (!e->level && !args_has(args, "--csv")) {
+        Err why = {0};
+        char *text = find_verdict(args, c, s, e, &why);
+        if (c->id > 0)
+            document_add(&d, "h2", "Verdict on design %ld", c->id);
+        else
+            document_add(&d, "h2", "Verdict on design %s", c->word);
+        document_say(&d, "%s", text ? text : why.text);
+        json_put(d.data, "verdict=%s", text);
+        free(text);
+    }
     d.drawn = json_put(json_copy(d.data), "shown=%p", shown);
     return document_give(&d, args, err);
 }
@@ -248,32 +238,16 @@ static Status add_one(const char *source, void *user, Err *err)
     return evaluations_add(user, source, 0, err);
 }
 
-/* The run's own, where they are now. */
-static Status add_own(Evaluations *e, const Settings *s, const Run *run, Err *err)
-{
-    TRY(record_paths_check(s, run, err));
-    return suite_of_study(&s->motion, add_one, e, err);
-}
-
+/* By default the run's own, where they are now. */
 static Status add_records(const Args *args, Evaluations *e, const Settings *s, const Run *run, Err *err)
 {
     const char *path;
-    if (!args_has(args, "--record"))
-        return add_own(e, s, run, err);
+    if (!args_has(args, "--record")) {
+        TRY(record_paths_check(s, run, err));
+        return suite_of_study(&s->motion, add_one, e, err);
+    }
     for (int i = 0; (path = args_next(args, "--record", &i));)
         TRY(evaluations_add_suite(e, path, err));
-    return STATUS_OK;
-}
-
-/* The period of --sa is the building's first, unless another is set. */
-static Status take_period(const Args *args, Settings *s, Err *err)
-{
-    Building b;
-    if (args_gives(args, "motion.sa_period_s"))
-        return STATUS_OK;
-    TRY(building_load(&b, &s->building, err));
-    s->motion.sa_period_s = 2 * M_PI / b.omega[0];
-    building_free(&b);
     return STATUS_OK;
 }
 
@@ -298,8 +272,12 @@ static Status take_intensities(const Args *args, Settings *s, double levels[], E
             return misused(err, "%s %.60s scales every record; %s does not go with it", option, text, OTHERS[i]);
     if (sa || is_range)
         motion_unscale(&s->motion);
-    if (sa)
-        TRY(take_period(args, s, err));
+    if (sa && !args_gives(args, "motion.sa_period_s")) { /* the period is the building's first, unless another is set */
+        Building b;
+        TRY(building_load(&b, &s->building, err));
+        s->motion.sa_period_s = 2 * M_PI / b.omega[0];
+        building_free(&b);
+    }
     if (!is_range)
         return !text ? STATUS_OK : settings_put(s, sa ? "motion.sa_g" : "motion.pga_g", text, err);
     e->level = levels;
@@ -349,7 +327,7 @@ static Status run_and_give(const Args *args, Settings *s, Chosen *c, Evaluations
     if (e->n_read == 0) {
         Document why = {0};
         say_refused(&why, e);
-        document_print(&why, stderr);
+        document_print(&why, stderr, 0);
         return bad_data(err, "%s: holds no ground motion that can be read", args_value(args, "--record"));
     }
     /* 3. What the run knows of a design that cannot be predicted stands where it is more than was found now. */
@@ -462,34 +440,6 @@ static Status run(const Args *args, Err *err)
     return status;
 }
 
-static const ArgOption OPTIONS[] = {
-    VALUE("--design", "ID", DESIGN_OF_RUN "; with --full-model also none: the building alone"),
-    VALUES("--record", "FILE", "a ground motion, or all of a folder or list, sorted; may be repeated"),
-    OPTION_CHANNEL,
-    VALUE("--pga", "G", "scale every record to this peak [g]; FROM:STEP:TO: incremental dynamic analysis"),
-    VALUE("--sa", "G",
-          "scale to this Sa (5 %) at the building's first period or motion.sa_period_s [g]; FROM:STEP:TO as above"),
-    VALUE("--fragility", "LIST",
-          "with FROM:STEP:TO: probability of exceeding drift_ratio=0.02,j3_g=5 by intensity; limits: those of the run"),
-    VALUE("--counts", "FILE", "fragility by a CSV of intensity (such as sa_g), exceeded and of, without a design"),
-    VALUE("--hazard", "FILE",
-          "CSV of sa_g (or pga_g) and rate_per_year: adds yearly rates of exceedance and the annual loss"),
-    OPTION_UNIT,
-    OPTION_TEXT,
-    OPTION_SET,
-    SETTING("--threads", "N", "search.threads", "number of threads; 0: one per processor"),
-    SETTING("--replicates", "N", "sim.replicates",
-            "replicates of the design under each record: mean and standard deviation; default: as the run's"),
-    OPTION_JSON,
-    VALUE("--csv", "FILE", "a row per record, intensity and scene as CSV into FILE; -: standard output"),
-    VALUE("--pelicun", "FILE",
-          "peaks of every floor, a row per record: demand CSV of pelicun, or of EE-UQ if named response.csv"),
-    VALUE("--svg", "FILE",
-          "with FROM:STEP:TO, by Chromium: response (16 %, median, 84 %) against intensity, or fragilities"),
-    SWITCH("--full-model", "simulate all degrees of freedom of the building's frame too"),
-    OPTION_END,
-};
-
 const Command CMD_EVALUATE = {
     .name = "evaluate",
     .group = GROUP_DECIDE,
@@ -510,6 +460,34 @@ const Command CMD_EVALUATE = {
         "and all modes (106 for the built-in tower). Shares by mode are assigned by shape. --json then has\n"
         "the objects reduced and full with the keys of `simulate --json`, and error: reduced / full - 1;\n"
         "several designs or records make a list.",
-    .options = OPTIONS,
+    .options =
+        {
+            VALUE("--design", "ID", DESIGN_OF_RUN "; with --full-model also none: the building alone"),
+            VALUES("--record", "FILE", "a ground motion, or all of a folder or list, sorted; may be repeated"),
+            VALUE("--pga", "G", "scale every record to this peak [g]; FROM:STEP:TO: incremental dynamic analysis"),
+            VALUE("--sa", "G",
+                  "scale to this Sa (5 %) at the building's first period or motion.sa_period_s [g]; FROM:STEP:TO as "
+                  "above"),
+            VALUE("--fragility", "LIST",
+                  "with FROM:STEP:TO: probability of exceeding drift_ratio=0.02,j3_g=5 by intensity; limits: those of "
+                  "the run"),
+            VALUE("--counts", "FILE",
+                  "fragility by a CSV of intensity (such as sa_g), exceeded and of, without a design"),
+            VALUE("--hazard", "FILE",
+                  "CSV of sa_g (or pga_g) and rate_per_year: adds yearly rates of exceedance and the annual loss"),
+            OPTION_UNIT,
+            OPTION_TEXT,
+            OPTION_SET,
+            SETTING("--threads", "N", "search.threads", "number of threads; 0: one per processor"),
+            SETTING("--replicates", "N", "sim.replicates",
+                    "replicates of the design under each record: mean and standard deviation; default: as the run's"),
+            OPTION_JSON,
+            VALUE("--csv", "FILE", "a row per record, intensity and scene as CSV into FILE; -: standard output"),
+            VALUE("--pelicun", "FILE",
+                  "peaks of every floor, a row per record: demand CSV of pelicun, or of EE-UQ if named response.csv"),
+            VALUE("--svg", "FILE",
+                  "with FROM:STEP:TO, by Chromium: response (16 %, median, 84 %) against intensity, or fragilities"),
+            SWITCH("--full-model", "simulate all degrees of freedom of the building's frame too"),
+        },
     .run = run,
 };

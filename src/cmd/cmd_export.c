@@ -3,49 +3,26 @@
 #include "store/export.h"
 #include "store/output.h"
 
-/* A well-spread choice of the front: the knee first, then again and again the design farthest from those chosen. */
-static Status write_selected(const Args *args, const Run *run, FILE *f, Err *err)
-{
-    long wanted;
-    TRY(args_whole(args, "--select", 1, 1000000, 0, &wanted, err));
-    size_t *rows;
-    TRY_ROOM(rows, wanted, "designs", err);
-    const Status status = export_designs(f, run, EXPORT_FRONT, run_spread_out(run, wanted, 1, rows), rows, err);
-    free(rows);
-    return status;
-}
-
-static Status write_table(const Args *args, const Run *run, Err *err)
-{
-    Output o;
-    TRY(output_open(&o, args_value(args, "--csv"), err));
-    const Status status = args_has(args, "--select") ? write_selected(args, run, o.stream, err)
-                          : args_has(args, "--all")
-                              ? export_designs(o.stream, run, EXPORT_ALL, run->table.n, NULL, err)
-                              : export_designs(o.stream, run, EXPORT_FRONT, run->n_front, run->front, err);
-    return output_end(&o, status, err);
-}
-
 static Status check_options(const Args *args, Err *err)
 {
-    if (!args_has(args, "--csv") && !args_has(args, "--json"))
-        return misused(err, "--csv FILE is missing, where the table goes (or --json)");
-    return args_alone(args, "--all", "--select", err);
+    return args_has(args, "--csv") || args_has(args, "--json")
+               ? STATUS_OK
+               : misused(err, "--csv FILE is missing, where the table goes (or --json)");
 }
 
 static Status export_run(const Args *args, const Run *run, Err *err)
 {
+    Output o;
     TRY(args_has(args, "--json") ? export_json(stdout, run, err) : STATUS_OK);
-    return args_has(args, "--csv") ? write_table(args, run, err) : STATUS_OK;
+    if (!args_has(args, "--csv"))
+        return STATUS_OK;
+    TRY(output_open(&o, args_value(args, "--csv"), err));
+    return output_end(&o,
+                      args_has(args, "--all")
+                          ? export_designs(o.stream, run, EXPORT_ALL, run->table.n, NULL, err)
+                          : export_designs(o.stream, run, EXPORT_FRONT, run->n_front, run->front, err),
+                      err);
 }
-
-static const ArgOption OPTIONS[] = {
-    VALUE("--csv", "FILE", "write the table to FILE; -: standard output"),
-    SWITCH("--all", "every evaluated design with its outcome, instead of the front"),
-    VALUE("--select", "N", "only N designs spread over the front, the knee first"),
-    SWITCH("--json", "settings, columns, every design and every generation, as JSON on standard output"),
-    OPTION_END,
-};
 
 const Command CMD_EXPORT = {
     .name = "export",
@@ -61,7 +38,12 @@ const Command CMD_EXPORT = {
         "is not complete.\n\n"
         "Several runs of one problem give one front, on which each design appears once. results/README.md\n"
         "explains every column. The run may still be working.",
-    .options = OPTIONS,
+    .options =
+        {
+            VALUE("--csv", "FILE", "write the table to FILE; -: standard output"),
+            SWITCH("--all", "every evaluated design with its outcome, instead of the front"),
+            SWITCH("--json", "settings, columns, every design and every generation, as JSON on standard output"),
+        },
     .run = check_options,
     .run_of = export_run,
     .only_reads = 1,

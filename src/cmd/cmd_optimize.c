@@ -45,9 +45,8 @@ static void tell(const StudyProgress *p, void *user)
     t->has_line = t->terminal;
 }
 
-static void tell_start(const char *folder, size_t n_simulated, size_t n_workers, size_t n_busy, void *user)
+static void tell_start(const char *folder, size_t n_simulated, size_t n_workers, size_t n_busy, void *)
 {
-    (void)user;
     if (n_workers > n_busy)
         fprintf(stderr, "%zu workers, but at most %zu designs are under way at once: raise search.ahead\n", n_workers,
                 n_busy);
@@ -55,12 +54,11 @@ static void tell_start(const char *folder, size_t n_simulated, size_t n_workers,
         fprintf(stderr, "%s: resumed after %zu simulations\n", folder, n_simulated);
 }
 
-static void tell_model(const json_t *chosen, void *user)
+static void tell_model(const json_t *chosen, void *)
 {
-    (void)user;
     Document d = {0};
     document_model(&d, chosen);
-    document_print(&d, stderr);
+    document_print(&d, stderr, 0);
 }
 
 static void tell_record(const Scenario *w, void *user)
@@ -71,7 +69,7 @@ static void tell_record(const Scenario *w, void *user)
     t->has_warned = 1;
     Document d = {0};
     document_motion(&d, &w->motion, w->options.sim.duration_s);
-    document_print(&d, stderr);
+    document_print(&d, stderr, 0);
 }
 
 /* The best designs beside the baselines, and what the objectives are. */
@@ -83,7 +81,7 @@ static void say_front(Document *d, const Run *run, const StudySummary *summary)
     json_t *meaning = json_object();
     words_of_rule(run->settings, rule);
     if (rule[0])
-        document_say(d, "p", "each number: %s", rule);
+        document_say(d, "each number: %s", rule);
     json_t *table = document_table(d);
     for (size_t k = 0; k < schema->n_obj; k++) {
         const Column *c = schema_objective(schema, k);
@@ -98,28 +96,12 @@ static void say_front(Document *d, const Run *run, const StudySummary *summary)
     if (summary->has_baselines) {
         figures_baselines(table, schema, summary->baseline);
         if (run->settings->sim.replicates > 1)
-            document_say(d, "p", "replicates exist for designs with impacts only; the other lines are as designed");
+            document_say(d, "replicates exist for designs with impacts only; the other lines are as designed");
     }
     document_list(d, meaning);
     if (summary->has_baselines && missing)
-        document_say(d, "p", "%s", missing);
-    document_say(d, "p", "knee: nearest to the ideal point when every objective is scaled to 0..1 over the front.");
-}
-
-/* Of a study with screened designs: how many, what they cost, and how far the cheap level agrees. */
-static void say_screening(Document *d, const StudySummary *sum)
-{
-    if (sum->n_screened == 0)
-        return;
-    document_say(d, "p",
-                 "%zu designs were screened by a part of their simulations (search.fidelity), %zu were finished or "
-                 "simulated whole; together this is %zu of %ld evaluations",
-                 sum->n_screened, sum->n_simulated - sum->n_screened, sum->n_evaluations, sum->max_evals);
-    if (isnan(sum->level_agreement))
-        document_say(d, "p", "too few designs were finished to know how well their first part ranks them");
-    else
-        document_say(d, "p", "rank correlation of screened with full results (Kendall's tau): %.2f%s",
-                     sum->level_agreement, sum->has_left_screening ? ": too low, so that screening ended" : "");
+        document_say(d, "%s", missing);
+    document_say(d, "knee: nearest to the ideal point when every objective is scaled to 0..1 over the front.");
 }
 
 /* Once, of the first constraint of an external problem whose values end at 0: what they leave out. */
@@ -136,72 +118,57 @@ static void say_clipped(Document *d, const Run *run)
             }
     }
     if (least == 0 && most > 0)
-        document_say(d, "p",
+        document_say(d,
                      "%s is never below 0: the search learns more from values that also say how far a limit is, "
                      "stress / allowed - 1 and not max(0, ...)",
                      schema_extra(&run->schema, c - 1)->name);
 }
 
-/* Nothing succeeded, or nothing keeps search.limits: then the designs that come nearest. */
-static Status report_no_front(const Run *run, const StudySummary *summary, Err *err)
-{
-    size_t rows[NEAREST_MAX];
-    const size_t n = run_nearest(run, rows);
-    Document d = {0};
-    TRY(export_nearest(summary->folder, run, n, rows, err));
-    if (n == 0 || !run_has_limits(run))
-        return run_why_empty(run, err);
-    document_say(&d, "p", "nearest: %s/nearest.csv", summary->folder);
-    document_say(&d, "p", "%zu simulated designs, %zu simulations failed, %.1f s (%s)", summary->n_simulated,
-                 summary->n_failed, summary->seconds, stop_reason_words(summary->stopped));
-    json_t *table = document_table(&d);
-    for (size_t i = 0; i < n; i++) {
-        const Evaluation *e = &run->table.row[rows[i]];
-        char label[48];
-        snprintf(label, sizeof label, "misses by %.3g", e->violation);
-        figures_design(table, label, e->id, &run->schema, run_f(run, rows[i]), NULL, e->sd, e->extra);
-    }
-    document_say(&d, "p", "misses by: sum of the relative violations of search.limits and of g > 0.");
-    say_clipped(&d, run);
-    document_print(&d, stdout);
-    return run_why_empty(run, err);
-}
-
-static void say_run(Document *d, const Run *run, const StudySummary *summary)
+static void say_run(Document *d, const Run *run, const StudySummary *sum)
 {
     const NamedCost named = named_cost(run);
     char polished[160], folder[4 * PATH_MAX + 3];
     size_t n_failed, most;
-    document_say(d, "p", "front: %s/front.csv", summary->folder);
-    document_say(d, "p", "%zu nondominated of %zu simulated designs, %zu simulations failed, %.1f s (%s)", run->n_front,
-                 summary->n_simulated, summary->n_failed, summary->seconds, stop_reason_words(summary->stopped));
+    document_say(d, "front: %s/front.csv", sum->folder);
+    document_say(d, "%zu nondominated of %zu simulated designs, %zu simulations failed, %.1f s (%s)", run->n_front,
+                 sum->n_simulated, sum->n_failed, sum->seconds, stop_reason_words(sum->stopped));
     const char *reason = evaluation_table_failures(&run->table, &n_failed, &most);
     if (n_failed > 0)
-        document_say(d, "p",
-                     2 * n_failed > summary->n_simulated ? "warning: most simulations failed; %zu of %zu failures: %s"
-                                                         : "%zu of %zu failures: %s",
+        document_say(d,
+                     2 * n_failed > sum->n_simulated ? "warning: most simulations failed; %zu of %zu failures: %s"
+                                                     : "%zu of %zu failures: %s",
                      most, n_failed, reason);
     if (run->n_repeats > 0)
-        document_say(d, "p", "%zu of the simulations repeat a design, to average the noise (search.replicate_share)",
+        document_say(d, "%zu of the simulations repeat a design, to average the noise (search.replicate_share)",
                      run->n_repeats);
     say_clipped(d, run);
-    say_screening(d, summary);
-    say_front(d, run, summary);
+
+    /* Of screened designs: how many, what they cost, and how far the cheap level agrees. */
+    if (sum->n_screened > 0)
+        document_say(d,
+                     "%zu designs were screened by a part of their simulations (search.fidelity), %zu were finished or "
+                     "simulated whole; together this is %zu of %ld evaluations",
+                     sum->n_screened, sum->n_simulated - sum->n_screened, sum->n_evaluations, sum->max_evals);
+    if (sum->n_screened > 0 && isnan(sum->level_agreement))
+        document_say(d, "too few designs were finished to know how well their first part ranks them");
+    else if (sum->n_screened > 0)
+        document_say(d, "rank correlation of screened with full results (Kendall's tau): %.2f%s", sum->level_agreement,
+                     sum->has_left_screening ? ": too low, so that screening ended" : "");
+    say_front(d, run, sum);
     if (named.n > 0)
-        document_say(d, "p", "refined with smaller steps: %zu designs, %zu of them unpredictable", named.n,
+        document_say(d, "refined with smaller steps: %zu designs, %zu of them unpredictable", named.n,
                      named.n_unpredictable);
     snprintf(polished, sizeof polished,
-             "polished: %zu of %zu designs improved by more than their spread (search.polish); ",
-             summary->polish.n_better, summary->polish.n_tried);
-    if (summary->polish.n_tried > 0)
-        improve_cost(d, polished, &summary->polish.cost);
+             "polished: %zu of %zu designs improved by more than their spread (search.polish); ", sum->polish.n_better,
+             sum->polish.n_tried);
+    if (sum->polish.n_tried > 0)
+        improve_cost(d, polished, &sum->polish.cost);
     json_t *model = study_model_of(run);
-    document_model_confirmed(d, model, summary->folder);
+    document_model_confirmed(d, model, sum->folder);
     json_decref(model);
-    if (summary->n_simulated == summary->n_before)
-        document_say(d, "p", "This run was finished before; nothing new was simulated. --new starts another one.");
-    document_say(d, "p", "charts and tables:  %s report %s", program_invocation_name,
-                 text_shell(summary->folder, folder));
+    if (sum->n_simulated == sum->n_before)
+        document_say(d, "This run was finished before; nothing new was simulated. --new starts another one.");
+    document_say(d, "charts and tables:  %s report %s", program_invocation_name, text_shell(sum->folder, folder));
 }
 
 static json_t *json_of_design(const Run *run, size_t row)
@@ -232,23 +199,53 @@ static json_t *json_of_run(const Run *run, const StudySummary *summary)
                    json_review(&summary->review), study_model_of(run));
 }
 
-static Status show(const Args *args, const Run *run, const StudySummary *summary, Err *err)
+static Status show(const Args *args, const Run *run, const StudySummary *sum, Err *err)
 {
-    if (summary->n_front == 0)
-        return args_has(args, "--json") ? run_why_empty(run, err) : report_no_front(run, summary, err);
-    TRY(export_nearest(summary->folder, NULL, 0, NULL, err));
-    Document d = {.data = json_of_run(run, summary)};
-    say_run(&d, run, summary);
-    if (!args_has(args, "--json"))
-        document_verdict(&d, run, run_knee(run), NULL);
-    return document_give(&d, args, err);
+    const int as_json = args_has(args, "--json");
+    Document d = {0};
+    size_t rows[NEAREST_MAX];
+    if (sum->n_front > 0) {
+        TRY(export_nearest(sum->folder, NULL, 0, NULL, err));
+        d.data = json_of_run(run, sum);
+        say_run(&d, run, sum);
+        if (!as_json)
+            document_verdict(&d, run, run_knee(run), NULL);
+        return document_give(&d, args, err);
+    }
+
+    /* Nothing succeeded, or nothing keeps search.limits: then the designs that come nearest. */
+    const size_t n = as_json ? 0 : run_nearest(run, rows);
+    if (!as_json)
+        TRY(export_nearest(sum->folder, run, n, rows, err));
+    if (n == 0 || !run_has_limits(run))
+        return run_why_empty(run, err);
+    document_say(&d, "nearest: %s/nearest.csv", sum->folder);
+    document_say(&d, "%zu simulated designs, %zu simulations failed, %.1f s (%s)", sum->n_simulated, sum->n_failed,
+                 sum->seconds, stop_reason_words(sum->stopped));
+    json_t *table = document_table(&d);
+    for (size_t i = 0; i < n; i++) {
+        const Evaluation *e = &run->table.row[rows[i]];
+        char label[48];
+        snprintf(label, sizeof label, "misses by %.3g", e->violation);
+        figures_design(table, label, e->id, &run->schema, run_f(run, rows[i]), NULL, e->sd, e->extra);
+    }
+    document_say(&d, "misses by: sum of the relative violations of search.limits and of g > 0.");
+    say_clipped(&d, run);
+    document_print(&d, stdout, 0);
+    return run_why_empty(run, err);
 }
 
-/* A run is resumed with its own settings, in its folder or, with --new and --out, in another one. */
-static Status take_run(const Args *args, Settings *s, RunStore **store, Err *err)
+/* The operand is a settings file, or the folder of a run, which is resumed with its own settings, there or, with --new
+ * and --out, in another folder. */
+static Status take_settings(const Args *args, Settings *s, RunStore **store, Err *err)
 {
-    Run run;
-    if (args_has(args, "--new") || args_gives(args, "run.out")) {
+    const int has_out = args_gives(args, "run.out");
+    if (!run_is_there(args->operand)) {
+        TRY(args_settings(args, s, NULL, NULL, err));
+        return has_out ? STATUS_OK : output_place_check(s->run.out, args->operand, err);
+    }
+    if (args_has(args, "--new") || has_out) {
+        Run run;
         TRY(run_read(&run, args->operand, err));
         *s = *run.settings;
         run_free(&run);
@@ -262,25 +259,6 @@ static Status take_run(const Args *args, Settings *s, RunStore **store, Err *err
     return record_paths_check(s, NULL, err);
 }
 
-/* The operand is a settings file, or the folder of a run. */
-static Status take_settings(const Args *args, Settings *s, RunStore **store, Err *err)
-{
-    if (run_is_there(args->operand))
-        return take_run(args, s, store, err);
-    TRY(args_settings(args, s, NULL, NULL, err));
-    return args_gives(args, "run.out") ? STATUS_OK : output_place_check(s->run.out, args->operand, err);
-}
-
-/* Of a run whose records have gone: once it is finished they are not needed. */
-static Status show_finished(const Args *args, RunStore *store, Run *finished, Err *err)
-{
-    StudySummary summary;
-    if (!store || args->n_given > 0 || !study_finished(store, &summary, finished))
-        return STATUS_MISSING;
-    fprintf(stderr, "%s\n", err->text);
-    return show(args, finished, &summary, err);
-}
-
 static Status optimize(const Args *args, Run *finished, Err *err)
 {
     Settings s;
@@ -289,7 +267,6 @@ static Status optimize(const Args *args, Run *finished, Err *err)
     const char *terminal = getenv("TERM");
     Telling telling = {.terminal = isatty(STDERR_FILENO) && terminal && strcmp(terminal, "dumb") != 0};
     StudyOptions options = {.fresh = args_has(args, "--new"),
-                            .force = args_has(args, "--force-settings"),
                             .stop = signals_asked,
                             .started = tell_start,
                             .model = tell_model,
@@ -298,9 +275,12 @@ static Status optimize(const Args *args, Run *finished, Err *err)
                             .user = &telling,
                             .run = finished};
     Status status = take_settings(args, &s, &options.store, err);
-    if (status != STATUS_OK) {
-        if (status == STATUS_MISSING)
-            status = show_finished(args, options.store, finished, err);
+    if (status != STATUS_OK) { /* once a run is finished records that have gone are not needed */
+        if (status == STATUS_MISSING && options.store && args->n_given == 0 &&
+            study_finished(options.store, &summary, finished)) {
+            fprintf(stderr, "%s\n", err->text);
+            status = show(args, finished, &summary, err);
+        }
         store_free(options.store);
         return status;
     }
@@ -324,20 +304,6 @@ static Status run(const Args *args, Err *err)
     return status;
 }
 
-static const ArgOption OPTIONS[] = {
-    OPTIONS_MOTION,
-    SETTING("--out", "DIR", "run.out", "folder of the run; a run that it holds is resumed"),
-    SWITCH("--new", "begin a new run in any case: if the folder holds one, add a number to its name"),
-    SWITCH("--force-settings", "allow lower limits (simulations, hours) on resuming; raising them needs no option"),
-    SETTING("--threads", "N", "search.threads", "number of threads; 0: one per processor"),
-    SETTING("--max-evals", "N", "search.max_evals", "stop after N simulations"),
-    SETTING("--max-hours", "H", "search.max_hours",
-            "stop after H hours, to be resumed later; auto: before the Slurm job ends"),
-    OPTION_JSON,
-    OPTION_SET,
-    OPTION_END,
-};
-
 const Command CMD_OPTIMIZE = {
     .name = "optimize",
     .group = GROUP_STUDY,
@@ -353,6 +319,17 @@ const Command CMD_OPTIMIZE = {
         "Ctrl-C, SIGTERM and --max-hours store everything and end with status 75. A second signal, at least\n"
         "0.2 s later, ends at once; it discards running simulations and at most 0.2 s of finished ones.\n"
         "With problem.kind = external your own program is the simulator (docs/external.md).",
-    .options = OPTIONS,
+    .options =
+        {
+            OPTIONS_MOTION,
+            SETTING("--out", "DIR", "run.out", "folder of the run; a run that it holds is resumed"),
+            SWITCH("--new", "begin a new run in any case: if the folder holds one, add a number to its name"),
+            SETTING("--threads", "N", "search.threads", "number of threads; 0: one per processor"),
+            SETTING("--max-evals", "N", "search.max_evals", "stop after N simulations"),
+            SETTING("--max-hours", "H", "search.max_hours",
+                    "stop after H hours, to be resumed later; auto: before the Slurm job ends"),
+            OPTION_JSON,
+            OPTION_SET,
+        },
     .run = run,
 };

@@ -71,11 +71,19 @@ static const char *verdict_of(const Improved *r)
 }
 
 /* Both designs, the gain of every objective that was to be improved, what is to be thought of it, and the cost. */
-static void say_all(Document *d, const Improve *m)
+static Status work(const Args *args, Improve *m, Err *err)
 {
     const Improved *r = &m->result;
+    TRY(take_options(args, m, err));
+    TRY(improve_design(&m->run, m->row, &m->config, polish_design, &m->result, err));
     const Evaluation *before = &r->designs.row[POLISH_BEFORE], *end = &r->designs.row[POLISH_END];
-    json_t *table = document_table(d);
+    if (polish_counts(r))
+        TRY(improve_store(m, end, err));
+    Document d = {.data = json_of("design=%ld verdict=%s tried=%zu simulated=%zu failed=%zu seconds=%g polished=%p",
+                                  m->id, verdict_of(r), r->cost.n_evaluated, r->cost.n_simulated, r->cost.n_failed,
+                                  r->cost.seconds, table_of(m)),
+                  .rows = table_of(m)};
+    json_t *table = document_table(&d);
     improve_row(m, table, "before", POLISH_BEFORE, m->run.table.row[m->row].id);
     if (r->has_changed)
         improve_row(m, table, "polished", POLISH_END, m->id);
@@ -87,24 +95,10 @@ static void say_all(Document *d, const Improve *m)
         if (isfinite(error))
             snprintf(known, sizeof known, " with a standard error of %.2g", error);
         if (m->config.weight[k] > 0.0)
-            document_say(d, "p", "%s is %s by %.3g%s", c->name, gain < 0.0 ? "worse" : "better", fabs(gain), known);
+            document_say(&d, "%s is %s by %.3g%s", c->name, gain < 0.0 ? "worse" : "better", fabs(gain), known);
     }
-    document_say(d, "p", "%s", verdict_of(r));
-    improve_say(d, m);
-}
-
-static Status work(const Args *args, Improve *m, Err *err)
-{
-    const Improved *r = &m->result;
-    TRY(take_options(args, m, err));
-    TRY(improve_design(&m->run, m->row, &m->config, polish_design, &m->result, err));
-    if (polish_counts(r))
-        TRY(improve_store(m, &r->designs.row[POLISH_END], err));
-    Document d = {.data = json_of("design=%ld verdict=%s tried=%zu simulated=%zu failed=%zu seconds=%g polished=%p",
-                                  m->id, verdict_of(r), r->cost.n_evaluated, r->cost.n_simulated, r->cost.n_failed,
-                                  r->cost.seconds, table_of(m)),
-                  .rows = table_of(m)};
-    say_all(&d, m);
+    document_say(&d, "%s", verdict_of(r));
+    improve_say(&d, m);
     return document_give(&d, args, err);
 }
 
@@ -112,21 +106,6 @@ static Status run(const Args *args, Err *err)
 {
     return improve_run(args, work, err);
 }
-
-static const ArgOption OPTIONS[] = {
-    VALUE("--design", "ID", DESIGN_OF_RUN),
-    VALUE("--improve", "NAME[=W],...",
-          "objectives to improve, with weights in ranges of the front, or all; default: the first objective"),
-    VALUE("--keep", "NAME[=S],...",
-          "objectives that lose at most their standard deviation, or the share S of their value; default: all"),
-    VALUE("--max-evals", "N", "largest number of simulations; default: 300"),
-    VALUE("--replicates", "N", "simulations of a noisy design, such as a tower's, that are averaged; default: 4"),
-    VALUE("--csv", "FILE",
-          "the polished design, its objectives before and after, their errors, into FILE; -: standard output"),
-    OPTION_JSON,
-    OPTION_MOVED,
-    OPTION_END,
-};
 
 const Command CMD_POLISH = {
     .name = "polish",
@@ -139,6 +118,20 @@ const Command CMD_POLISH = {
         "Improves objectives of a design of RUN (default: the knee) by NLopt on the simulator. The other\n"
         "objectives get no worse than their spread. At the end both designs are simulated again. If the gain\n"
         "exceeds the standard deviation, the new design is stored in the run; its kind is polished.",
-    .options = OPTIONS,
+    .options =
+        {
+            VALUE("--design", "ID", DESIGN_OF_RUN),
+            VALUE("--improve", "NAME[=W],...",
+                  "objectives to improve, with weights in ranges of the front, or all; default: the first objective"),
+            VALUE("--keep", "NAME[=S],...",
+                  "objectives that lose at most their standard deviation, or the share S of their value; default: all"),
+            VALUE("--max-evals", "N", "largest number of simulations; default: 300"),
+            VALUE("--replicates", "N",
+                  "simulations of a noisy design, such as a tower's, that are averaged; default: 4"),
+            VALUE("--csv", "FILE",
+                  "the polished design, its objectives before and after, their errors, into FILE; -: standard output"),
+            OPTION_JSON,
+            OPTION_MOVED,
+        },
     .run = run,
 };

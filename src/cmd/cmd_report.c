@@ -12,35 +12,25 @@
 #include "settings/options.h"
 #include "store/notes.h"
 
-static Status take_records(const Args *args, const Settings *run, OtherRecords *r, Err *err)
+/* The design in detail, under the records of the study and those of --record, or built-in ones. */
+static Status open_report(const Args *args, const Run *run, const RecordPaths *moved, OtherRecords *records, Report *r,
+                          Err *err)
 {
-    const char *path;
-    TRY(elsewhere_of_study(r, &run->motion, err));
-    for (int i = 0; (path = args_next(args, "--record", &i));)
-        TRY(elsewhere_add(r, path, err));
-    return elsewhere_otherwise(r, &run->motion, err);
-}
-
-static Status open_report(const Args *args, const Run *run, OtherRecords *records, Report *r, Err *err)
-{
-    const char *design = args_value(args, "--design");
+    const char *design = args_value(args, "--design"), *path;
     Settings other = *run->settings;
     size_t row;
-    DetailOptions options = {.other = &other, .records = records->source, .with_ladder = !args_has(args, "--pictures")};
-    TRY(args_moved(args, &options.moved, err));
     TRY(args_apply(args, &other, NULL, NULL, err));
-    TRY(take_records(args, &other, records, err));
-    options.n_records = records->n;
+    TRY(elsewhere_of_study(records, &other.motion, err));
+    for (int i = 0; (path = args_next(args, "--record", &i));)
+        TRY(elsewhere_add(records, path, err));
+    TRY(elsewhere_otherwise(records, &other.motion, err));
     TRY(design_of_run(run, design ? design : "knee", &row, NULL, err));
+    const DetailOptions options = {.other = &other,
+                                   .moved = *moved,
+                                   .records = records->source,
+                                   .n_records = records->n,
+                                   .with_ladder = !args_has(args, "--pictures")};
     return report_open(r, run, row, &options, err);
-}
-
-/* A folder that comes from elsewhere may hold a link in the report's place, which leads to another file. */
-static void drop_link(const char *path)
-{
-    struct stat there;
-    if (lstat(path, &there) == 0 && S_ISLNK(there.st_mode))
-        unlink(path);
 }
 
 /* Where the page goes, or the pictures or the dossier instead of it. */
@@ -48,6 +38,7 @@ static Status take_target(const Args *args, char path[PATH_MAX], Err *err)
 {
     static const char *const PLACES[] = {"--out", "--pictures", "--dossier"};
     const char *given = NULL;
+    struct stat there;
     for (size_t i = 0; i < N_OF(PLACES); i++)
         given = given ? given : args_value(args, PLACES[i]);
     TRY(args_alone(args, "--out", "--pictures --dossier", err));
@@ -56,58 +47,50 @@ static Status take_target(const Args *args, char path[PATH_MAX], Err *err)
         return misused(err, "--out FILE is missing, where the page of several runs goes");
     if (snprintf(path, PATH_MAX, "%s%s", given ? given : args->operand, given ? "" : "/report.html") >= PATH_MAX)
         return fail(err, STATUS_IO, "%.200s...: the path is too long", path);
-    if (!given)
-        drop_link(path);
+
+    /* A folder that comes from elsewhere may hold a link in the report's place, which leads to another file. */
+    if (!given && lstat(path, &there) == 0 && S_ISLNK(there.st_mode))
+        unlink(path);
     return STATUS_OK;
-}
-
-static Status check_dossier(const Run *run, const char *path, Err *err)
-{
-    if (run->settings->problem.kind != PROBLEM_TOWER)
-        return bad_data(err, "%s: --dossier needs a tower (problem.kind)", run->folder);
-    return dossier_check(path, err);
-}
-
-static Status dossier(const Args *args, const Run *run, const Report *r, const OtherRecords *records, const char *path,
-                      Err *err)
-{
-    Settings s = *run->settings;
-    RecordPaths moved;
-    TRY(args_moved(args, &moved, err));
-    TRY(record_paths_find(&s, run->provenance, &moved, err));
-    run_steps(run, r->chosen, &s.sim);
-    return dossier_write(r, &s, records->n, records->source, path, err);
-}
-
-/* The page simulates with the records of the run, where they are now. */
-static Status what_if(const Args *args, const Run *run, Report *r, Err *err)
-{
-    RecordPaths moved;
-    TRY(args_moved(args, &moved, err));
-    return what_if_json(run, &moved, &r->scene, err);
 }
 
 static Status report(const Args *args, const Run *run, Err *err)
 {
+    const int is_dossier = args_has(args, "--dossier"), has_pictures = args_has(args, "--pictures");
     char path[PATH_MAX];
+    Settings s = *run->settings;
     Report r = {0};
     OtherRecords records = {.notes = stderr};
+    RecordPaths moved;
     json_t *notes;
-    const int is_dossier = args_has(args, "--dossier");
+
+    /* 1. Before anything is simulated: notes that cannot be shown are not left out in silence. */
     Status status = notes_of_run(run, &notes, err);
     json_decref(notes);
-    TRY(status); /* notes that cannot be shown are not left out in silence */
+    TRY(status);
+    TRY(args_moved(args, &moved, err));
     TRY(take_target(args, path, err));
-    TRY(is_dossier                                         ? check_dossier(run, path, err)
-        : args_has(args, "--pictures") && run->n_front > 0 ? browser_check(path, err)
-                                                           : STATUS_OK);
-    status = open_report(args, run, &records, &r, err);
-    if (status == STATUS_OK && r.has_detail && !is_dossier && !args_has(args, "--pictures") &&
-        !args_has(args, "--no-engine"))
-        status = what_if(args, run, &r, err);
-    THEN(status, is_dossier                     ? dossier(args, run, &r, &records, path, err)
-                 : args_has(args, "--pictures") ? report_pictures(&r, path, err)
-                                                : report_page(&r, path, err));
+    if (is_dossier && s.problem.kind != PROBLEM_TOWER)
+        return bad_data(err, "%s: --dossier needs a tower (problem.kind)", run->folder);
+    TRY(is_dossier                         ? dossier_check(path, err)
+        : has_pictures && run->n_front > 0 ? browser_check(path, err)
+                                           : STATUS_OK);
+
+    /* 2. Dossier and page simulate with the records of the run, where they are now. */
+    status = open_report(args, run, &moved, &records, &r, err);
+    if (is_dossier) {
+        THEN(status, record_paths_find(&s, run->provenance, &moved, err));
+        if (status == STATUS_OK) {
+            run_steps(run, r.chosen, &s.sim);
+            status = dossier_write(&r, &s, records.n, records.source, path, err);
+        }
+    } else if (has_pictures) {
+        THEN(status, report_pictures(&r, path, err));
+    } else {
+        if (r.has_detail && !args_has(args, "--no-engine"))
+            THEN(status, what_if_json(run, &moved, &r.scene, err));
+        THEN(status, report_page(&r, path, err));
+    }
     report_close(&r);
     TRY(status);
     if (args_has(args, "--json"))
@@ -116,23 +99,6 @@ static Status report(const Args *args, const Run *run, Err *err)
         printf("%s\n", path);
     return STATUS_OK;
 }
-
-static const ArgOption OPTIONS[] = {
-    VALUE("--out", "FILE", "where the page goes (default: RUN/report.html); -: standard output"),
-    VALUE("--pictures", "DIR", "write pictures for a paper into DIR instead of the page, SVG and PNG, by Chromium"),
-    VALUE("--dossier", "FILE", "write a document for the checker of the design instead of the page, .html or .pdf"),
-    VALUE("--design", "ID", "the design shown in detail: an id of the run, knee (default) or best_NAME"),
-    VALUES("--record", "FILE",
-           "further earthquakes for the design, a file, folder or list; may be repeated (default: built-in ones)"),
-    SWITCH("--json", "print where the page was written, as an object"),
-    SWITCH("--no-engine", "leave out the simulator and the records, so that the page cannot simulate"),
-    OPTION_MOVED,
-    OPTION_CHANNEL,
-    OPTION_PGA,
-    OPTION_UNIT,
-    OPTION_TEXT,
-    OPTION_END,
-};
 
 const Command CMD_REPORT = {
     .name = "report",
@@ -147,13 +113,31 @@ const Command CMD_REPORT = {
         "two columns; gaps as a heat map; all pairs with their correlations; typical designs; which\n"
         "variables matter (Sobol indices); a table and a CSV of designs within chosen ranges; the growth of\n"
         "the hypervolume. One design is simulated again: its gaps, peaks, forces, energies, the displacement\n"
-        "of a floor, and other earthquakes. --pga, --unit and --channel apply to those; by default they are\n"
-        "scaled as the run's own. `imtet serve` shows the same page live.\n\n"
+        "of a floor, and other earthquakes. --pga and --unit apply to those (of several components one is\n"
+        "named behind the file, 'kobe.v2 channel=N00E'); by default they are scaled as the run's own. `imtet\n"
+        "serve` shows the same page live.\n\n"
         "--dossier writes one document of some ten pages on the design: building, core, devices and\n"
         "drawings; simulation at accuracy fine, by CVODE and on the full model; forces with limits, the\n"
         "ladder, every record, intensities, the design as built, sensitivities, what is not covered, and\n"
         "provenance. CVODE takes minutes under a long record. A PDF needs Chromium.",
-    .options = OPTIONS,
+    .options =
+        {
+            VALUE("--out", "FILE", "where the page goes (default: RUN/report.html); -: standard output"),
+            VALUE("--pictures", "DIR",
+                  "write pictures for a paper into DIR instead of the page, SVG and PNG, by Chromium"),
+            VALUE("--dossier", "FILE",
+                  "write a document for the checker of the design instead of the page, .html or .pdf"),
+            VALUE("--design", "ID", "the design shown in detail: an id of the run, knee (default) or best_NAME"),
+            VALUES(
+                "--record", "FILE",
+                "further earthquakes for the design, a file, folder or list; may be repeated (default: built-in ones)"),
+            SWITCH("--json", "print where the page was written, as an object"),
+            SWITCH("--no-engine", "leave out the simulator and the records, so that the page cannot simulate"),
+            OPTION_MOVED,
+            OPTION_PGA,
+            OPTION_UNIT,
+            OPTION_TEXT,
+        },
     .is_alone = 1,
     .run_of = report,
 };

@@ -33,12 +33,6 @@ static Status run(const Args *args, Err *err)
     _exit(fflush(stdout)); /* nothing is to be stored, and no simulation under way is waited for */
 }
 
-static const ArgOption OPTIONS[] = {
-    VALUE("--port", "N", "port of the server (default: a free one)"),
-    OPTION_MOVED,
-    OPTION_END,
-};
-
 const Command CMD_SERVE = {
     .name = "serve",
     .group = GROUP_STUDY,
@@ -52,7 +46,11 @@ const Command CMD_SERVE = {
         "has sliders that change gaps, thickness, motion and restitution of a design and show its response\n"
         "at once. RUN may be a folder of runs: the page then lists them and compares up to four. The server\n"
         "writes nothing but notes on designs. Ctrl-C ends it.",
-    .options = OPTIONS,
+    .options =
+        {
+            VALUE("--port", "N", "port of the server (default: a free one)"),
+            OPTION_MOVED,
+        },
     .is_alone = 1,
     .run = run,
 };

@@ -35,11 +35,6 @@ static Status run(const Args *args, Err *err)
     return STATUS_OK;
 }
 
-static const ArgOption OPTIONS[] = {
-    SWITCH("--json", "keys and defaults as an object"),
-    OPTION_END,
-};
-
 const Command CMD_SETTINGS = {
     .name = "settings",
     .group = GROUP_PREPARE,
@@ -49,7 +44,10 @@ const Command CMD_SETTINGS = {
     .details = "Prints every setting with its default below its meaning, unit and range. The output is a valid\n"
                "configuration (imtet settings > mine.ini). With KEY or WORD it prints only the settings whose name\n"
                "or meaning has it.",
-    .options = OPTIONS,
+    .options =
+        {
+            SWITCH("--json", "keys and defaults as an object"),
+        },
     .run = run,
     .only_reads = 1,
 };
@@ -153,29 +151,26 @@ static void look_for(const char *key, const char *path, void *user)
     l->status = fail(l->err, why.code, "%s: %s", key, why.text);
 }
 
-static Status settings_of_new(const Args *args, Settings *s, Err *err)
-{
-    const char *preset = args_value(args, "--preset");
-    Looked looked = {.err = err};
-    settings_defaults(s);
-    TRY(settings_put(s, "sim.model", "auto", err));
-    if (preset)
-        TRY(take_preset(preset, s, err));
-    TRY(args_apply(args, s, NULL, NULL, err));
-    settings_each_path(s, look_for, &looked);
-    TRY(looked.status);
-    if (preset && s->sim.model == MODEL_AUTO)
-        TRY(fit_building(args, s, err));
-    return settings_check(s, err);
-}
-
 static Status begin(const Args *args, Err *err)
 {
     static const char NAME[] = "study.ini";
+    const char *preset = args_value(args, "--preset");
+    Looked looked = {.err = err};
     char path[PATH_MAX], quoted[4 * PATH_MAX + 3];
     Settings s;
     Output o;
-    TRY(settings_of_new(args, &s, err));
+
+    /* 1. The settings: by the preset, by options over it, and by the building. */
+    settings_defaults(&s);
+    TRY(settings_put(&s, "sim.model", "auto", err));
+    TRY(preset ? take_preset(preset, &s, err) : STATUS_OK);
+    TRY(args_apply(args, &s, NULL, NULL, err));
+    settings_each_path(&s, look_for, &looked);
+    TRY(looked.status);
+    TRY(preset && s.sim.model == MODEL_AUTO ? fit_building(args, &s, err) : STATUS_OK);
+    TRY(settings_check(&s, err));
+
+    /* 2. Their file, in a folder that has none. */
     if (snprintf(path, sizeof path, "%s/%s", args->operand, NAME) >= (int)sizeof path)
         return misused(err, "%.60s...: the path is too long", args->operand);
     if (mkdir(args->operand, 0777) != 0 && errno != EEXIST)
@@ -188,8 +183,7 @@ static Status begin(const Args *args, Err *err)
     settings_make_relative(&s, folder);
     snprintf(out, sizeof out, "results%s", strrchr(folder, '/'));
     free(folder);
-    if (!args_gives(args, "run.out"))
-        TRY(settings_put(&s, "run.out", out, err));
+    TRY(args_gives(args, "run.out") ? STATUS_OK : settings_put(&s, "run.out", out, err));
     TRY(output_open(&o, path, err));
     fputs("; Settings that are not written here keep their defaults: `imtet settings` lists all.\n\n", o.stream);
     settings_write(&s, o.stream, SETTINGS_BASIC, NULL);
@@ -198,11 +192,6 @@ static Status begin(const Args *args, Err *err)
     printf("%s: edit it, then `imtet check %s` and `imtet optimize %s`\n", path, quoted, quoted);
     return STATUS_OK;
 }
-
-static const ArgOption NEW_OPTIONS[] = {
-    VALUE("--preset", "NAME",
-          "a short study: stops, devices (stops, links or nothing), engineer (with limits), risk or paper"),
-    OPTION_RECORD, OPTION_PGA, OPTION_SET, OPTION_END};
 
 const Command CMD_NEW = {
     .name = "new",
@@ -214,7 +203,14 @@ const Command CMD_NEW = {
                "and range. Files must exist; the study names them by their path from FOLDER. Its run goes to\n"
                "results/FOLDER. A preset has few objectives and a search box that fits the building: gaps of up to\n"
                "0.6 % of its height, a core of a seventh of it. Options and --set override the preset.",
-    .options = NEW_OPTIONS,
+    .options =
+        {
+            VALUE("--preset", "NAME",
+                  "a short study: stops, devices (stops, links or nothing), engineer (with limits), risk or paper"),
+            OPTION_RECORD,
+            OPTION_PGA,
+            OPTION_SET,
+        },
     .run = begin,
     .only_reads = 1,
 };

@@ -19,26 +19,12 @@ static Status take_mm(const char *option, const char *text, double *value, Err *
     return STATUS_OK;
 }
 
-static Status take_plates(const char *list, ImproveConfig *c, Err *err)
-{
-    char item[32];
-    c->n_plates = list_count(list);
-    if (c->n_plates > PLATES_MAX)
-        return misused(err, "--plates: more than %d", PLATES_MAX);
-    for (size_t i = 0; i < c->n_plates; i++) {
-        if (!list_item(list, i, item, sizeof item))
-            return misused(err, "--plates: item %zu is empty or too long", i + 1);
-        TRY(take_mm("--plates", item, &c->plate[i], err));
-        if (i > 0 && c->plate[i] <= c->plate[i - 1])
-            return misused(err, "--plates: give them in ascending order: %s stands behind a thicker one", item);
-    }
-    return STATUS_OK;
-}
-
 static Status take_options(const Args *args, Improve *m, Err *err)
 {
     const Schema *schema = &m->run.schema;
     const char *keep = args_value(args, "--keep"), *gap_step = args_value(args, "--gap-step");
+    const char *plates = args_value(args, "--plates");
+    char item[32];
     ImproveConfig *c = &m->config;
     long zones;
     for (size_t k = 0; k < schema->n_obj; k++)
@@ -53,7 +39,17 @@ static Status take_options(const Args *args, Improve *m, Err *err)
     c->zones = (int)zones;
     if (gap_step)
         TRY(take_mm("--gap-step", gap_step, &c->gap_step, err));
-    return args_has(args, "--plates") ? take_plates(args_value(args, "--plates"), c, err) : STATUS_OK;
+    c->n_plates = plates ? list_count(plates) : 0;
+    if (c->n_plates > PLATES_MAX)
+        return misused(err, "--plates: more than %d", PLATES_MAX);
+    for (size_t i = 0; i < c->n_plates; i++) {
+        if (!list_item(plates, i, item, sizeof item))
+            return misused(err, "--plates: item %zu is empty or too long", i + 1);
+        TRY(take_mm("--plates", item, &c->plate[i], err));
+        if (i > 0 && c->plate[i] <= c->plate[i - 1])
+            return misused(err, "--plates: give them in ascending order: %s stands behind a thicker one", item);
+    }
+    return STATUS_OK;
 }
 
 /* The path with its cost, which is returned; then every variable at its end, gaps and plates in mm. */
@@ -72,7 +68,7 @@ static json_t *say_path(Document *d, const Improve *m)
         if (i != SIMPLIFY_ZONES || m->config.zones > 0)
             improve_row(m, table, label, i, i == SIMPLIFY_START ? m->run.table.row[m->row].id : 0);
     }
-    document_say(d, "p", "behind the colon: devices, and the cost by design.prices");
+    document_say(d, "behind the colon: devices, and the cost by design.prices");
     const double *x = path->row[path->n - 1].x;
     for (size_t j = 0; j < s->n_var; j++) {
         char text[KIND_WORD_MAX];
@@ -84,7 +80,7 @@ static json_t *say_path(Document *d, const Improve *m)
     }
     document_list(d, variables);
     if (path->row[0].violation > 0.0)
-        document_say(d, "p", "The design violates the limits of its run; the simplified one may too.");
+        document_say(d, "The design violates the limits of its run; the simplified one may too.");
     return table;
 }
 
@@ -128,34 +124,6 @@ static Status fail_unmet(const Improve *m, Err *err)
                 last->violation > start->violation ? "" : keep);
 }
 
-/* The end of the path is stored, marked where it does not keep what is to be kept, unless the run has it: who asks for
- * the same a second time gets the same answer. */
-static Status store_end(Improve *m, Err *err)
-{
-    const EvaluationTable *path = &m->result.designs, *has = &m->run.table;
-    Evaluation *last = &path->row[path->n - 1];
-    char reason[64];
-    for (size_t i = 0; i < has->n; i++)
-        if (memcmp(last->x, has->row[i].x, has->n_var * sizeof *last->x) == 0) {
-            m->id = has->row[i].id;
-            return STATUS_OK;
-        }
-    snprintf(reason, sizeof reason, "%s%ld%s", SIMPLIFIED_FROM, has->row[m->row].id,
-             is_unmet(m) ? " beyond --keep" : "");
-    last->reason = reason;
-    return improve_store(m, last, err);
-}
-
-/* The run has changed since it was read. */
-static Status say_verdict(Document *d, const Improve *m, Err *err)
-{
-    Run now;
-    TRY(run_read(&now, m->run.folder, err));
-    document_verdict(d, &now, run_find(&now, m->id), m->run.settings);
-    run_free(&now);
-    return STATUS_OK;
-}
-
 static Status work(const Args *args, Improve *m, Err *err)
 {
     TRY(take_options(args, m, err));
@@ -164,11 +132,31 @@ static Status work(const Args *args, Improve *m, Err *err)
     TRY(improve_design(&m->run, m->row, &m->config, simplify_design, &m->result, err));
     Document d = {0};
     json_t *path = say_path(&d, m);
-    Status status = store_end(m, err);
+
+    /* The end of the path is stored, marked where it does not keep what is to be kept, unless the run has it: who asks
+     * for the same a second time gets the same answer. */
+    const EvaluationTable *has = &m->run.table;
+    Evaluation *last = &m->result.designs.row[m->result.designs.n - 1];
+    char reason[64];
+    Status status = STATUS_OK;
+    for (size_t i = 0; i < has->n && m->id == 0; i++)
+        if (memcmp(last->x, has->row[i].x, has->n_var * sizeof *last->x) == 0)
+            m->id = has->row[i].id;
+    snprintf(reason, sizeof reason, "%s%ld%s", SIMPLIFIED_FROM, has->row[m->row].id,
+             is_unmet(m) ? " beyond --keep" : "");
+    last->reason = reason;
+    if (m->id == 0)
+        status = improve_store(m, last, err);
     improve_say(&d, m);
     d.data = json_of("design=%ld path=%p", m->id, json_plain(path));
-    if (!args_has(args, "--json"))
-        THEN(status, say_verdict(&d, m, err));
+    if (!args_has(args, "--json")) {
+        Run now; /* the run has changed since it was read */
+        THEN(status, run_read(&now, m->run.folder, err));
+        if (status == STATUS_OK) {
+            document_verdict(&d, &now, run_find(&now, m->id), m->run.settings);
+            run_free(&now);
+        }
+    }
     THEN(status, document_give(&d, args, err));
     document_free(&d);
     return status == STATUS_OK && is_unmet(m) ? fail_unmet(m, err) : status;
@@ -178,18 +166,6 @@ static Status run(const Args *args, Err *err)
 {
     return improve_run(args, work, err);
 }
-
-static const ArgOption OPTIONS[] = {
-    VALUE("--design", "ID", DESIGN_OF_RUN),
-    VALUE("--zones", "N", "make the floors of each of N zones alike; default: they stay as they are"),
-    VALUE("--gap-step", "MM", "round gaps to multiples of it; default: they stay"),
-    VALUE("--plates", "MM,MM,...", "choose walls from these; default: they stay"),
-    VALUE("--keep", "NAME[=S],...",
-          "objectives that may lose the share S of their value (2% without =S); default: the first 2%, others 10%"),
-    OPTION_JSON,
-    OPTION_MOVED,
-    OPTION_END,
-};
 
 const Command CMD_SIMPLIFY = {
     .name = "simplify",
@@ -202,6 +178,17 @@ const Command CMD_SIMPLIFY = {
                "and removes devices while --keep holds. Each step is simulated under all records of RUN. Prints the\n"
                "path and stores its end in the run; its kind is polished. An end that loses more than --keep allows\n"
                "is marked (exit status 69), and the --keep that would do is named.",
-    .options = OPTIONS,
+    .options =
+        {
+            VALUE("--design", "ID", DESIGN_OF_RUN),
+            VALUE("--zones", "N", "make the floors of each of N zones alike; default: they stay as they are"),
+            VALUE("--gap-step", "MM", "round gaps to multiples of it; default: they stay"),
+            VALUE("--plates", "MM,MM,...", "choose walls from these; default: they stay"),
+            VALUE("--keep", "NAME[=S],...",
+                  "objectives that may lose the share S of their value (2% without =S); default: the first 2%, others "
+                  "10%"),
+            OPTION_JSON,
+            OPTION_MOVED,
+        },
     .run = run,
 };

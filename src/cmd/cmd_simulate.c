@@ -22,12 +22,15 @@ typedef struct {
     SimResult *results;        /* (n) */
     double *error, *sd;        /* (n, N_MEASURES) of analysis/estimate.h; NULL: no estimate */
     Known known[N_MEASURES];   /* of the one design that a run names */
+    double every_s;            /* --every */
     int has_parts;             /* replicates or further records, summed up by the rule of a study */
     ReplicateSummary *summary; /* (n) where there are some */
 } Job;
 
-static Status choose_kind(const Args *args, Job *job, Err *err)
+/* Which case, and options that are wrong or would be left aside. */
+static Status take_options(const Args *args, Job *job, Err *err)
 {
+    static const char *const WITH_GAPS[] = {"--contacts", "--horizon", "--sensitivity", "sim.replicates"};
     const char *path = args_value(args, "--design");
     if (!path)
         return misused(err, "--design FILE is missing (--design none: the building alone)");
@@ -35,7 +38,16 @@ static Status choose_kind(const Args *args, Job *job, Err *err)
     if (none && rigid)
         return misused(err, "--rigid needs a core: give --design FILE instead of none");
     job->kind = none ? SCENE_NO_CORE : rigid ? SCENE_RIGID : SCENE_IMPACT;
-    return STATUS_OK;
+
+    /* From 1e-5 s on: 100 s are ten million rows, some 20 GB for 20 floors. */
+    TRY(args_number(args, "--every", 1e-5, 1e6, 0, &job->every_s, err));
+    for (size_t i = 0; i < N_OF(WITH_GAPS) && job->kind != SCENE_IMPACT; i++)
+        if (args_has(args, WITH_GAPS[i]) || args_gives(args, WITH_GAPS[i]))
+            return misused(err, "%s needs a design with gaps, not none or --rigid", WITH_GAPS[i]);
+    if (args_has(args, "--every") && !args_has(args, "--history"))
+        return misused(err, "--every needs --history FILE, whose spacing it is");
+    TRY(args_alone(args, "--horizon", "--csv --sensitivity --history --contacts --floor-spectra", err));
+    return args_alone(args, "--sensitivity", "--history --contacts --floor-spectra", err);
 }
 
 /* The designs; of one that a run names also its steps, into the settings. */
@@ -74,9 +86,9 @@ static Status give(const Args *args, const Job *job, const Settings *s, const To
     for (size_t i = 0; i < tower_n_records(t); i++)
         document_motion(&d, &tower_record(t, i)->motion, tower_record(t, i)->options.sim.duration_s);
     if (missing && strcmp(s->search.objectives, "auto") != 0)
-        document_say(&d, "p", "%s", missing);
+        document_say(&d, "%s", missing);
     if (job->kind == SCENE_RIGID)
-        document_say(&d, "p", "rigidly connected");
+        document_say(&d, "rigidly connected");
     json_t *table = document_table(&d);
     for (size_t i = 0; i < job->n; i++) {
         const SimResult *r = &job->results[i];
@@ -101,47 +113,8 @@ static Status give(const Args *args, const Job *job, const Settings *s, const To
     }
     d.data = json_only(d.data);
     if (job->n == 1 && *damage_words(job->results, damage))
-        document_say(&d, "p", "%s; under %s", damage, m->name);
+        document_say(&d, "%s; under %s", damage, m->name);
     return document_give(&d, args, err);
-}
-
-/* -- responses over time ------------------------------------------------------------------------------------------- */
-
-/* From 1e-5 s on: 100 s are ten million rows, some 20 GB for 20 floors. */
-static Status every_of(const Args *args, double *every_s, Err *err)
-{
-    return args_number(args, "--every", 1e-5, 1e6, 0, every_s, err);
-}
-
-static Status write_times(const Args *args, const Job *job, const Scenario *w, Err *err)
-{
-    const char *contacts = args_value(args, "--contacts"), *history = args_value(args, "--history");
-    const char *spectra = args_value(args, "--floor-spectra");
-    TimeJob times = {.scene = w->scene,
-                     .motion = &w->motion,
-                     .n = job->n,
-                     .tasks = job->tasks,
-                     .results = job->results,
-                     .designs = &job->designs};
-    TRY(every_of(args, &times.every_s, err));
-    TRY(contacts ? write_contacts(&times, contacts, err) : STATUS_OK);
-    TRY(history ? write_histories(&times, history, err) : STATUS_OK);
-    return spectra ? write_floor_spectra(&times, spectra, err) : STATUS_OK;
-}
-
-/* Options that are wrong or would be left aside. */
-static Status check_times(const Args *args, const Job *job, Err *err)
-{
-    static const char *const WITH_GAPS[] = {"--contacts", "--horizon", "--sensitivity", "sim.replicates"};
-    double every_s;
-    TRY(every_of(args, &every_s, err));
-    for (size_t i = 0; i < N_OF(WITH_GAPS) && job->kind != SCENE_IMPACT; i++)
-        if (args_has(args, WITH_GAPS[i]) || args_gives(args, WITH_GAPS[i]))
-            return misused(err, "%s needs a design with gaps, not none or --rigid", WITH_GAPS[i]);
-    if (args_has(args, "--every") && !args_has(args, "--history"))
-        return misused(err, "--every needs --history FILE, whose spacing it is");
-    TRY(args_alone(args, "--horizon", "--csv --sensitivity --history --contacts --floor-spectra", err));
-    return args_alone(args, "--sensitivity", "--history --contacts --floor-spectra", err);
 }
 
 /* -- the predictability horizon ------------------------------------------------------------------------------------ */
@@ -149,92 +122,74 @@ static Status check_times(const Args *args, const Job *job, Err *err)
 enum { HORIZON_REPLICATES = 16 };
 static const double HORIZON_CHANGE = 1e-12; /* of the gaps, between the two runs that are compared */
 
-static Status give_horizon(const Args *args, const Problem *p, const Horizon *h, const ReplicateSummary *r, Err *err)
-{
-    const Scenario *w = tower_record(tower_of(p), 0);
-    Document d = {.data =
-                      json_of("end_s=%g distance=%p reached_s=%p distance_at_end=%g replicates=%p", h->end_s,
-                              json_numbers(HORIZON_LEVELS, HORIZON_LEVEL), json_numbers(HORIZON_LEVELS, h->reached_s),
-                              h->distance_at_end, json_replicates(NULL, r))};
-    document_motion(&d, &w->motion, w->options.sim.duration_s);
-    document_say(&d, "p", "two runs whose gaps differ by %g of themselves are apart by", HORIZON_CHANGE);
-    for (int i = 0; i < HORIZON_LEVELS; i++)
-        if (isnan(h->reached_s[i]))
-            document_say(&d, "p", "  %-8g never (the run ends at %.4g s)", HORIZON_LEVEL[i], h->end_s);
-        else
-            document_say(&d, "p", "  %-8g after %.4g s", HORIZON_LEVEL[i], h->reached_s[i]);
-    document_say(&d, "p",
-                 "distance: root of the energy of the difference over the largest energy so far; at the end %.2g",
-                 h->distance_at_end);
-    figures_replicates(document_table(&d), tower_measures(tower_of(p)), r, NULL);
-    return document_give(&d, args, err);
-}
-
-static Status find_horizon(const Args *args, const Problem *p, const double x[], Err *err)
-{
-    const Scenario *w = tower_record(tower_of(p), 0);
-    Horizon h;
-    ReplicateSummary r;
-    SimResult as_designed;
-    TRY(horizon_find(w, x, HORIZON_CHANGE, &h, err));
-    TRY(tower_replicate(p, 1, x, &as_designed, &r, err));
-    r.spread = "gaps 1 um off";
-    return give_horizon(args, p, &h, &r, err);
-}
-
-/* Replicates whose gaps differ by what nobody can measure, and nothing else: enough to find a contact that grazes. */
+/* Two runs whose gaps differ by HORIZON_CHANGE; then replicates whose gaps differ by what nobody can measure, and
+ * nothing else: enough to find a contact that grazes. */
 static Status show_horizon(const Args *args, Settings *s, const double x[], Err *err)
 {
     Problem p;
+    Horizon h;
+    ReplicateSummary r;
+    SimResult as_designed;
     if (s->sim.engine != ENGINE_FAST)
         return misused(err, "--horizon needs sim.engine = fast");
     s->sim.replicates = HORIZON_REPLICATES;
     s->sim.gap_tolerance_m = ESTIMATE_GAP_M;
     s->sim.uncertain = (UncertainOptions){0};
     TRY(tower_open(&p, s, TOWER_AS_SET, SIZE_MAX, err));
-    const Status status = find_horizon(args, &p, x, err);
+    const Scenario *w = tower_record(tower_of(&p), 0);
+    Status status = horizon_find(w, x, HORIZON_CHANGE, &h, err);
+    THEN(status, tower_replicate(&p, 1, x, &as_designed, &r, err));
+    if (status == STATUS_OK) {
+        r.spread = "gaps 1 um off";
+        Document d = {.data = json_of("end_s=%g distance=%p reached_s=%p distance_at_end=%g replicates=%p", h.end_s,
+                                      json_numbers(HORIZON_LEVELS, HORIZON_LEVEL),
+                                      json_numbers(HORIZON_LEVELS, h.reached_s), h.distance_at_end,
+                                      json_replicates(NULL, &r))};
+        document_motion(&d, &w->motion, w->options.sim.duration_s);
+        document_say(&d, "two runs whose gaps differ by %g of themselves are apart by", HORIZON_CHANGE);
+        for (int i = 0; i < HORIZON_LEVELS; i++)
+            if (isnan(h.reached_s[i]))
+                document_say(&d, "  %-8g never (the run ends at %.4g s)", HORIZON_LEVEL[i], h.end_s);
+            else
+                document_say(&d, "  %-8g after %.4g s", HORIZON_LEVEL[i], h.reached_s[i]);
+        document_say(&d,
+                     "distance: root of the energy of the difference over the largest energy so far; at the end %.2g",
+                     h.distance_at_end);
+        figures_replicates(document_table(&d), tower_measures(tower_of(&p)), &r, NULL);
+        status = document_give(&d, args, err);
+    }
     problem_close(&p);
     return status;
 }
 
 /* -- sensitivities ------------------------------------------------------------------------------------------------- */
 
-static json_t *describe_slopes(const Sensitivity *s)
-{
-    json_t *slopes = json_of("j3_g=%p", json_null());
-    for (int k = 0; k < MEASURES_LISTED; k++)
-        if (isfinite(s->slope[k]))
-            json_object_set_new(slopes, measure(k)->name, json_of("slope=%g error=%g", s->slope[k], s->error[k]));
-    return json_of("parameter=%s value=%g step=%g slopes=%p", s->name, s->value, s->step, slopes);
-}
-
-static Status give_slopes(const Args *args, size_t n, const Sensitivity list[], Err *err)
-{
-    Document d = {.rows = json_array(), .data = json_array()};
-    for (size_t i = 0; i < n; i++) {
-        json_t *row =
-            json_put(figures_row(d.rows), "parameter=%s value=%g step=%g", list[i].name, list[i].value, list[i].step);
-        put_measures(row, NULL, "_slope", list[i].slope, "_error", list[i].error);
-        json_array_append_new(d.data, describe_slopes(&list[i]));
-    }
-    document_slopes(&d, n, list);
-    return document_give(&d, args, err);
-}
-
 static Status show_sensitivities(const Args *args, const Settings *s, const double x[], Err *err)
 {
     Sensitivity *list;
     size_t n;
     TRY(sensitivity_find(s, x, s->sim.replicates, &list, &n, err));
-    const Status shown = give_slopes(args, n, list, err);
+    Document d = {.rows = json_array(), .data = json_array()};
+    for (size_t i = 0; i < n; i++) {
+        const Sensitivity *l = &list[i];
+        json_t *row = json_put(figures_row(d.rows), "parameter=%s value=%g step=%g", l->name, l->value, l->step),
+               *one = json_copy(row), *slopes = json_of("j3_g=%p", json_null());
+        put_measures(row, NULL, "_slope", l->slope, "_error", l->error);
+        for (int k = 0; k < MEASURES_LISTED; k++)
+            if (isfinite(l->slope[k]))
+                json_object_set_new(slopes, measure(k)->name, json_of("slope=%g error=%g", l->slope[k], l->error[k]));
+        json_array_append_new(d.data, json_put(one, "slopes=%p", slopes));
+    }
+    document_slopes(&d, n, list);
     free(list);
-    return shown;
+    return document_give(&d, args, err);
 }
 
 /* ------------------------------------------------------------------------------------------------------------------ */
 
 static Status answer(const Args *args, const Settings *s, const Problem *p, Job *job, Err *err)
 {
+    static const char *const TIMES[N_TIME_FILES] = {"--contacts", "--history", "--floor-spectra"};
     const Scenario *w = tower_record(tower_of(p), 0);
     const size_t n = job->n;
     warn_of_settings(s, warn_on_stderr, NULL);
@@ -258,7 +213,16 @@ static Status answer(const Args *args, const Settings *s, const Problem *p, Job 
         known_raise(job->known, job->results, job->sd);
     }
     TRY(give(args, job, s, tower_of(p), err));
-    TRY(write_times(args, job, w, err));
+    const TimeJob times = {.scene = w->scene,
+                           .motion = &w->motion,
+                           .n = n,
+                           .tasks = job->tasks,
+                           .results = job->results,
+                           .designs = &job->designs,
+                           .every_s = job->every_s};
+    for (TimeFile k = 0; k < N_TIME_FILES; k++)
+        if (args_has(args, TIMES[k]))
+            TRY(time_file_write(&times, k, args_value(args, TIMES[k]), err));
     return n > 1 || job->results[0].outcome == RUN_OK
                ? STATUS_OK
                : fail(err, STATUS_INTERNAL, "the simulation failed: %s", job->results[0].reason);
@@ -283,8 +247,7 @@ static Status run(const Args *args, Err *err)
 {
     Settings s;
     Job job = {0};
-    TRY(choose_kind(args, &job, err));
-    TRY(check_times(args, &job, err));
+    TRY(take_options(args, &job, err));
     TRY(args_settings(args, &s, NULL, NULL, err));
     if (s.problem.kind != PROBLEM_TOWER)
         return asked_simulate(args, &s, err);
@@ -299,27 +262,6 @@ static Status run(const Args *args, Err *err)
     design_free(&job.designs);
     return status;
 }
-
-static const ArgOption OPTIONS[] = {
-    VALUE("--design", "FILE", DESIGN_WORDS "; none: the building alone"),
-    SWITCH("--rigid", "floors and core rigidly connected (zero gap): a linear building"),
-    SETTING("--replicates", "N", "sim.replicates",
-            "replicates as in a study, under motion.record and motion.records: mean and standard deviation"),
-    SWITCH("--sensitivity",
-           "how each result changes with gaps, thickness, contact and damping; --replicates reduces its error"),
-    SWITCH("--horizon",
-           "time until two nearly equal runs diverge; standard deviation of every result with gaps 1 um off"),
-    OPTIONS_MOTION,
-    OPTION_JSON,
-    OPTION_CSV,
-    VALUE("--contacts", "FILE", "one row per contact: time, floor, side, speeds, force, duration, energy lost"),
-    VALUE("--history", "FILE",
-          "time histories: floors, nodes of the core, contact forces, energies; -: standard output"),
-    VALUE("--every", "DT", "largest step of --history [s], reached by halving the record's step"),
-    VALUE("--floor-spectra", "FILE", "response spectra of every floor's acceleration, 5 % damped"),
-    OPTION_SET,
-    OPTION_END,
-};
 
 const Command CMD_SIMULATE = {
     .name = "simulate",
@@ -343,6 +285,25 @@ const Command CMD_SIMULATE = {
         "--horizon: impacts amplify differences, so two runs that differ in the last digit diverge after some\n"
         "hundreds of impacts. Before the predictability horizon results can be compared digit by digit. After\n"
         "it only mean and standard deviation can be compared; they come from 16 runs, gaps perturbed by 1 um.",
-    .options = OPTIONS,
+    .options =
+        {
+            VALUE("--design", "FILE", DESIGN_WORDS "; none: the building alone"),
+            SWITCH("--rigid", "floors and core rigidly connected (zero gap): a linear building"),
+            SETTING("--replicates", "N", "sim.replicates",
+                    "replicates as in a study, under motion.record and motion.records: mean and standard deviation"),
+            SWITCH("--sensitivity",
+                   "how each result changes with gaps, thickness, contact and damping; --replicates reduces its error"),
+            SWITCH("--horizon",
+                   "time until two nearly equal runs diverge; standard deviation of every result with gaps 1 um off"),
+            OPTIONS_MOTION,
+            OPTION_JSON,
+            OPTION_CSV,
+            VALUE("--contacts", "FILE", "one row per contact: time, floor, side, speeds, force, duration, energy lost"),
+            VALUE("--history", "FILE",
+                  "time histories: floors, nodes of the core, contact forces, energies; -: standard output"),
+            VALUE("--every", "DT", "largest step of --history [s], reached by halving the record's step"),
+            VALUE("--floor-spectra", "FILE", "response spectra of every floor's acceleration, 5 % damped"),
+            OPTION_SET,
+        },
     .run = run,
 };

@@ -22,8 +22,7 @@ typedef struct {
     CodeSpectrum code; /* motion.target */
     MotionFigures figures, recorded;
     double *velocity, *displacement, *husid; /* (n of the motion) */
-    double T[N_PERIODS], psa[N_PERIODS], psv[N_PERIODS], sd[N_PERIODS];
-    double target[N_PERIODS]; /* [m/s2] of the code, else 0 */
+    double T[N_PERIODS], psa[N_PERIODS];
     int is_processed; /* by motion.baseline, highpass_hz or lowpass_hz; `recorded` is without them, same scale */
     double recorded_psa[N_PERIODS];
 } Spectrum;
@@ -49,20 +48,24 @@ static Status compare_recorded(Spectrum *s, Err *err)
     return status;
 }
 
-static Status compute(Spectrum *s, Err *err)
+/* Does the displacement mean something? */
+static int is_corrected(const Spectrum *s)
 {
-    const Motion *m = &s->motion;
+    return s->motion.is_corrected || motion_is_corrected(&s->options);
+}
+
+static Status spectrum_open(Spectrum *s, const MotionOptions *o, Err *err)
+{
+    Motion *m = &s->motion;
+    *s = (Spectrum){.options = *o};
+    TRY(target_parse(o->target, &s->code, err));
+    TRY(motion_open(m, o, err));
+    TRY(motion_scale(m, o, err));
     for (int i = 0; i < N_PERIODS; i++)
         s->T[i] = SHORTEST_S * pow(LONGEST_S / SHORTEST_S, (double)i / (N_PERIODS - 1));
     spectrum_psa(m, DAMPING, N_PERIODS, s->T, s->psa);
-    for (int i = 0; i < N_PERIODS; i++) {
-        const double w = TWO_PI / s->T[i];
-        s->psv[i] = s->psa[i] / w;
-        s->sd[i] = s->psa[i] / (w * w);
-        s->target[i] = target_psa(&s->code, s->T[i]);
-    }
     motion_figures(m, &s->figures);
-    s->is_processed = motion_is_corrected(&s->options) || s->options.lowpass_hz > 0;
+    s->is_processed = motion_is_corrected(o) || o->lowpass_hz > 0;
     if (s->is_processed) /* before there are histories: a record being read takes as much memory again */
         TRY(compare_recorded(s, err));
     TRY_ROOM(s->velocity, 3 * m->n, "samples", err);
@@ -72,27 +75,6 @@ static Status compute(Spectrum *s, Err *err)
     return STATUS_OK;
 }
 
-/* Does the displacement mean something? */
-static int is_corrected(const Spectrum *s)
-{
-    return s->motion.is_corrected || motion_is_corrected(&s->options);
-}
-
-static Status spectrum_open(Spectrum *s, const MotionOptions *o, Err *err)
-{
-    *s = (Spectrum){.options = *o};
-    TRY(target_parse(o->target, &s->code, err));
-    TRY(motion_open(&s->motion, o, err));
-    TRY(motion_scale(&s->motion, o, err));
-    return compute(s, err);
-}
-
-static void spectrum_close(Spectrum *s)
-{
-    free(s->velocity);
-    motion_free(&s->motion);
-}
-
 /* ---- files and answers ------------------------------------------------------------------------------------------- */
 
 /* A row for every period, or for every few. */
@@ -100,18 +82,19 @@ static json_t *rows_of(size_t n, const Spectrum s[], size_t every)
 {
     json_t *table = json_array();
     for (size_t i = 0; i < N_PERIODS; i += every) {
-        json_t *row = json_put(figures_row(table), "period_s=%g", s->T[i]);
+        const double w = TWO_PI / s->T[i];
         double mean = 0;
+        json_t *row = json_put(figures_row(table), "period_s=%g", s->T[i]);
         for (size_t k = 0; k < n; k++)
             mean += s[k].psa[i] / (double)n;
         if (n == 1)
-            json_put(row, "psa_m_s2=%g psv_m_s=%g sd_m=%g", s->psa[i], s->psv[i], s->sd[i]);
+            json_put(row, "psa_m_s2=%g psv_m_s=%g sd_m=%g", s->psa[i], s->psa[i] / w, s->psa[i] / (w * w));
         else
             json_put(row, "mean_psa_m_s2=%g", mean);
         if (n == 1 && s->is_processed)
             json_put(row, "recorded_psa_m_s2=%g", s->recorded_psa[i]);
         if (s->code.kind)
-            json_put(row, "target_psa_m_s2=%g", s->target[i]);
+            json_put(row, "target_psa_m_s2=%g", target_psa(&s->code, s->T[i]));
         for (size_t k = 0; k < n && n > 1; k++) {
             char name[160];
             cell_text(name, 128, basename(s[k].motion.name));
@@ -157,28 +140,23 @@ static Status write_event(const Motion *m, const char *path, Err *err)
     return status;
 }
 
-/* Figures of the motion; recorded: without base line and filters, where it has such. */
-static void add_figures(json_t *o, const MotionFigures *f)
-{
-    json_put(o, "pga_m_s2=%g pga_g=%g pgv_m_s=%g pgd_m=%g duration_s=%g arias_m_s=%g cav_m_s=%g d5_95_s=%g",
-             f->pga_m_s2, f->pga_m_s2 / GRAVITY, f->pgv_m_s, f->pgd_m, f->duration_s, f->arias_m_s, f->cav_m_s,
-             f->d5_95_s);
-}
-
-/* with_histories: they may be millions of numbers. */
+/* Figures of the motion, also without base line and filters, where it has such. with_histories: they may be millions of
+ * numbers. */
 static json_t *describe(const Spectrum *s, int with_histories)
 {
-    const MotionFigures *r = &s->recorded;
+    const MotionFigures *f = &s->figures, *r = &s->recorded;
     const Motion *m = &s->motion;
+    json_t *rows = rows_of(1, s, 1);
     json_t *o = json_of("motion=%s format=%s channel=%s processed=%s corrected=%c warning=%s samples=%ld scale=%g "
-                        "stretch=%g step_s=%g damping=%g",
+                        "stretch=%g step_s=%g damping=%g pga_m_s2=%g pga_g=%g pgv_m_s=%g pgd_m=%g duration_s=%g "
+                        "arias_m_s=%g cav_m_s=%g d5_95_s=%g",
                         m->name, m->format, m->channel, m->processed, is_corrected(s), m->warning, m->n, m->scale,
-                        m->stretch, m->dt_s, DAMPING);
-    add_figures(o, &s->figures);
-    json_put(o, "period_s=%p psa_m_s2=%p psv_m_s=%p sd_m=%p", json_numbers(N_PERIODS, s->T),
-             json_numbers(N_PERIODS, s->psa), json_numbers(N_PERIODS, s->psv), json_numbers(N_PERIODS, s->sd));
-    if (s->code.kind)
-        json_put(o, "target_psa_m_s2=%p", json_numbers(N_PERIODS, s->target));
+                        m->stretch, m->dt_s, DAMPING, f->pga_m_s2, f->pga_m_s2 / GRAVITY, f->pgv_m_s, f->pgd_m,
+                        f->duration_s, f->arias_m_s, f->cav_m_s, f->d5_95_s);
+    json_put(o, "period_s=%p psa_m_s2=%p psv_m_s=%p sd_m=%p target_psa_m_s2=%p", json_column(rows, "period_s"),
+             json_column(rows, "psa_m_s2"), json_column(rows, "psv_m_s"), json_column(rows, "sd_m"),
+             json_column(rows, "target_psa_m_s2"));
+    json_decref(rows);
     if (s->is_processed)
         json_put(o, "recorded=%p",
                  json_of("pga_m_s2=%g pgv_m_s=%g pgd_m=%g psa_m_s2=%p", r->pga_m_s2, r->pgv_m_s, r->pgd_m,
@@ -191,16 +169,6 @@ static json_t *describe(const Spectrum *s, int with_histories)
     return o;
 }
 
-/* Of several motions the mean, and each of them. */
-static json_t *describe_all(size_t n, const Spectrum s[], const json_t *rows, int with_histories)
-{
-    json_t *motions = json_array();
-    for (size_t k = 0; k < n; k++)
-        json_array_append_new(motions, describe(&s[k], with_histories));
-    return json_of("period_s=%p mean_psa_m_s2=%p target_psa_m_s2=%p motions=%p", json_column(rows, "period_s"),
-                   json_column(rows, "mean_psa_m_s2"), json_column(rows, "target_psa_m_s2"), motions);
-}
-
 static Status give(const Args *args, size_t n, const Spectrum s[], Err *err)
 {
     const char *times = args_value(args, "--history");
@@ -208,15 +176,21 @@ static Status give(const Args *args, size_t n, const Spectrum s[], Err *err)
     if (times)
         TRY(text_ends(times, ".json") ? write_event(&s->motion, times, err) : write_history(s, times, err));
     Document d = {.rows = rows_of(n, s, 1), .drawing = "motion", .width = 1100};
-    d.data = n == 1 ? describe(s, with_histories) : describe_all(n, s, d.rows, with_histories);
-    for (size_t k = 0; k < n; k++)
+    json_t *motions = json_array();
+    for (size_t k = 0; k < n; k++) {
+        json_array_append_new(motions, describe(&s[k], with_histories));
         document_motion(&d, &s[k].motion, 0);
+    }
+    d.data =
+        n == 1 ? json_only(motions)
+               : json_of("period_s=%p mean_psa_m_s2=%p target_psa_m_s2=%p motions=%p", json_column(d.rows, "period_s"),
+                         json_column(d.rows, "mean_psa_m_s2"), json_column(d.rows, "target_psa_m_s2"), motions);
     if (n == 1)
         document_list(&d, describe(s, 0));
     if (n == 1 && !is_corrected(s))
-        document_say(&d, "p",
+        document_say(&d,
                      "pgd_m: uncorrected: it contains the drift of the record (motion.baseline, motion.highpass_hz)");
-    document_say(&d, "p", "response at 5 %% damping");
+    document_say(&d, "response at 5 %% damping");
     json_t *table = rows_of(n, s, PRINTED_EACH);
     json_array_extend(document_table(&d), table);
     json_decref(table);
@@ -227,65 +201,42 @@ static Status give(const Args *args, size_t n, const Spectrum s[], Err *err)
 
 typedef struct {
     const Settings *settings;
-    size_t n, n_max;
-    Spectrum *s; /* (n); NULL: they are only counted */
+    size_t n;
+    Spectrum *s; /* (n) */
 } Opened;
 
 static Status open_next(const char *source, void *user, Err *err)
 {
     Opened *all = user;
     MotionOptions o = all->settings->motion;
-    if (!all->s) {
-        all->n++;
-        return STATUS_OK;
-    }
-    if (all->n == all->n_max)
-        return bad_data(err, "%s: was added while the others were read", source);
+    Spectrum *more = realloc(all->s, (all->n + 1) * sizeof *more);
+    if (!more)
+        return fail_memory(err, all->n + 1, "motions");
+    all->s = more;
     TRY(option_put_path(o.record, source, err));
-    return spectrum_open(&all->s[all->n++], &o, err);
-}
-
-static Status each_operand(const Args *args, Opened *all, Err *err)
-{
-    all->n = 0;
-    for (int k = 0; k < args->n_operands; k++)
-        TRY(suite_each(args->operands[k], open_next, all, err));
-    return STATUS_OK;
+    return spectrum_open(&more[all->n++], &o, err);
 }
 
 static Status run(const Args *args, Err *err)
 {
     Settings settings;
     Opened all = {.settings = &settings};
+    Status status = STATUS_OK;
     settings_defaults(&settings);
     TRY(args_apply(args, &settings, NULL, NULL, err));
     TRY(settings_check(&settings, err));
-    TRY(each_operand(args, &all, err));
-    const size_t n = all.n_max = all.n;
-    if (n > 1 && args_has(args, "--history"))
-        return misused(err, "--history takes one motion, not %zu", n);
-    all.s = calloc(n + 1, sizeof *all.s);
-    Status status = all.s ? each_operand(args, &all, err) : fail_memory(err, n, "motions");
-    THEN(status, give(args, n, all.s, err));
-    for (size_t k = 0; all.s && k < n; k++)
-        spectrum_close(&all.s[k]);
+    for (int k = 0; k < args->n_operands; k++)
+        THEN(status, suite_each(args->operands[k], open_next, &all, err));
+    if (all.n > 1 && args_has(args, "--history"))
+        THEN(status, misused(err, "--history takes one motion, not %zu", all.n));
+    THEN(status, give(args, all.n, all.s, err));
+    for (size_t k = 0; k < all.n; k++) {
+        free(all.s[k].velocity);
+        motion_free(&all.s[k].motion);
+    }
     free(all.s);
     return status;
 }
-
-static const ArgOption OPTIONS[] = {
-    OPTION_CHANNEL,
-    OPTION_UNIT,
-    OPTION_TEXT,
-    OPTION_PGA,
-    OPTION_SET,
-    OPTION_JSON,
-    OPTION_CSV,
-    VALUE("--history", "FILE",
-          "acceleration, velocity, displacement, Husid's curve as CSV (NAME.json: SimCenter); -: standard output"),
-    VALUE("--svg", "FILE", "a picture of spectrum and histories, drawn by Chromium"),
-    OPTION_END,
-};
 
 const Command CMD_SPECTRUM = {
     .name = "spectrum",
@@ -301,7 +252,19 @@ const Command CMD_SPECTRUM = {
         "motion.highpass_hz=0.1); the recorded figures are then shown for comparison. For several motions it\n"
         "prints their spectra, the mean, and the code spectrum of --set 'motion.target=eurocode8 ag=0.3\n"
         "soil=C'.",
-    .options = OPTIONS,
+    .options =
+        {
+            OPTION_UNIT,
+            OPTION_TEXT,
+            OPTION_PGA,
+            OPTION_SET,
+            OPTION_JSON,
+            OPTION_CSV,
+            VALUE("--history", "FILE",
+                  "acceleration, velocity, displacement, Husid's curve as CSV (NAME.json: SimCenter); -: standard "
+                  "output"),
+            VALUE("--svg", "FILE", "a picture of spectrum and histories, drawn by Chromium"),
+        },
     .is_alone = 1,
     .run = run,
 };

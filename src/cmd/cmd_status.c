@@ -46,86 +46,68 @@ static void say_generations(Document *d, const Run *run)
     }
     json_decref(all);
     if (n > 0 && settings_screens(run->settings))
-        document_say(d, "p",
-                     "simulated: designs screened or finished; each counts as a part of an evaluation "
-                     "(search.fidelity)");
+        document_say(d, "simulated: designs screened or finished; each counts as a part of an evaluation "
+                        "(search.fidelity)");
 }
 
-/* -- for programs -------------------------------------------------------------------------------------------------- */
-
-static json_t *json_sessions(const Run *run)
+static json_t *describe(const char *folder, const Run *run, const Standing *s)
 {
-    json_t *list = json_array();
-    for (size_t i = 0; i < run->n_sessions; i++) {
-        const RunSession *s = &run->session[i];
-        const Effort e = effort_of(run, i);
-        json_array_append_new(
-            list, json_of("started=%s ended=%s stopped=%s host=%s pid=%ld threads=%ld simulated_before=%ld seconds=%g "
-                          "waiting_share=%g surrogate_share=%g search_share=%g busy_share=%g",
-                          s->started, s->ended[0] ? s->ended : NULL, s->stopped[0] ? s->stopped : NULL, s->host, s->pid,
-                          s->threads, s->simulated_before, s->seconds, e.waiting, e.surrogate, e.search, e.busy));
-    }
-    return list;
-}
-
-/* By outcome: how many, with the words of the first. */
-static json_t *json_failures(const Run *run)
-{
-    json_t *o = json_object();
+    json_t *failures = json_object(); /* by outcome: how many, with the words of the first */
     for (size_t i = 0; i < run->table.n; i++) {
         const Evaluation *e = &run->table.row[i];
         const char *word = outcome_word(e->outcome);
         if (run->place[i].ok)
             continue;
-        if (!json_object_get(o, word))
-            json_object_set_new(o, word, json_of("count=%d first=%s", 0, e->reason));
-        json_t *count = json_object_get(json_object_get(o, word), "count");
+        if (!json_object_get(failures, word))
+            json_object_set_new(failures, word, json_of("count=%d first=%s", 0, e->reason));
+        json_t *count = json_object_get(json_object_get(failures, word), "count");
         json_integer_set(count, json_integer_value(count) + 1);
     }
-    return o;
-}
-
-static json_t *describe(const char *folder, const Run *run, const Standing *s)
-{
     json_t *o = json_of("run=%s state=%s simulated=%ld max_evals=%ld failed=%ld front=%ld polished=%ld repeats=%ld "
                         "hypervolume=%g simulations_per_second=%g seconds=%g seconds_left=%g failures=%p",
                         folder, state_words(s->state), s->progress.simulated, s->max_evals, s->n_failed, run->n_front,
                         s->n_polished, run->n_repeats, s->hypervolume, progress_rate(&s->progress), s->seconds,
-                        s->left_s, json_failures(run));
+                        s->left_s, failures);
     if (s->state == RUN_RUNNING)
         json_put(o, "process=%p", json_of("pid=%ld host=%s", s->holder.pid, s->holder.host));
     if (s->n_lost > 0)
         json_put(o, "lost=%ld", s->n_lost);
     const NamedCost named = named_cost(run);
-    if (named.n > 0) {
-        json_put(o, "named=%ld named_unpredictable=%ld named_time_share=%g", named.n, named.n_unpredictable,
-                 named.share);
-    }
-    return o;
+    return named.n > 0 ? json_put(o, "named=%ld named_unpredictable=%ld named_time_share=%g", named.n,
+                                  named.n_unpredictable, named.share)
+                       : o;
 }
 
 /* What people read in tables, or wait for: designs of the front are simulated. */
-static json_t *describe_more(json_t *o, const Run *run, const Standing *s)
+static void describe_more(json_t *o, const Run *run, const Standing *s)
 {
     FrontReview review = front_review(run);
     Err err = {0};
-    json_put(o, "generations=%p sessions=%p", json_generations(run), json_sessions(run));
+    json_t *sessions = json_array(), *front = json_null();
+    for (size_t i = 0; i < run->n_sessions; i++) {
+        const RunSession *r = &run->session[i];
+        const Effort e = effort_of(run, i);
+        json_array_append_new(
+            sessions,
+            json_of("started=%s ended=%s stopped=%s host=%s pid=%ld threads=%ld simulated_before=%ld seconds=%g "
+                    "waiting_share=%g surrogate_share=%g search_share=%g busy_share=%g",
+                    r->started, r->ended[0] ? r->ended : NULL, r->stopped[0] ? r->stopped : NULL, r->host, r->pid,
+                    r->threads, r->simulated_before, r->seconds, e.waiting, e.surrogate, e.search, e.busy));
+    }
     if (review.n_gaps > 0 && s->state == RUN_FINISHED) /* a run under way has no time for it */
         front_review_of_run(run, &review, &err);
-    json_put(o, "front_review=%p", review.n_gaps > 0 ? json_review(&review) : json_null());
-    if (err.code != STATUS_OK) {
-        json_put(json_object_get(o, "front_review"), "never_closing=%p never_closing_unknown=%s", json_null(),
-                 err.text);
-    }
-    return o;
+    if (review.n_gaps > 0)
+        front = json_review(&review);
+    if (err.code != STATUS_OK)
+        json_put(front, "never_closing=%p never_closing_unknown=%s", json_null(), err.text);
+    json_put(o, "generations=%p sessions=%p front_review=%p", json_generations(run), sessions, front);
 }
 
 /* -- the runs of a folder ------------------------------------------------------------------------------------------ */
 
 /* A run that cannot be read says why, and the others follow. */
-static void add_run(const char *folder, const char *name, void *list)
+static void add_run(const char *folder, const char *, void *list)
 {
-    (void)name;
     Run run;
     Standing s;
     Err err = {0};
@@ -141,36 +123,30 @@ static void add_run(const char *folder, const char *name, void *list)
     run_free(&run);
 }
 
-/* Without hypervolumes: each is a share of a box of that run alone. */
-static void say_runs(Document *d, json_t *list)
-{
-    size_t i;
-    json_t *row;
-    json_array_foreach(list, i, row)
-    {
-        json_object_del(row, "hypervolume");
-        if (json_object_get(row, "reason"))
-            json_object_set(row, " ", json_object_get(row, "reason"));
-        json_object_del(row, "reason");
-        json_put(row, "run=%s", basename(json_string_value(json_object_get(row, "run"))));
-    }
-    json_array_extend(document_table(d), list);
-    json_decref(list);
-}
-
+/* In the table without hypervolumes: each is a share of a box of that run alone. */
 static Status show_folder(const Args *args, const char *folder, Err *err)
 {
-    json_t *list = json_array();
-    if (runs_each(folder, add_run, list) < 0) {
+    Document d = {.data = json_array()};
+    json_t *row;
+    size_t i;
+    if (runs_each(folder, add_run, d.data) < 0) {
         const Status why = errno == ENOTDIR ? bad_data(err, "%s: is a file, not a run or a folder of runs", folder)
                                             : fail_missing(err, folder);
-        json_decref(list);
+        document_free(&d);
         return why;
     }
-    Document d = {.data = list};
-    if (json_array_size(list) == 0)
-        document_say(&d, "p", "%s: no runs", folder);
-    say_runs(&d, json_deep_copy(list));
+    if (json_array_size(d.data) == 0)
+        document_say(&d, "%s: no runs", folder);
+    json_t *table = document_table(&d);
+    json_array_foreach(d.data, i, row)
+    {
+        row = json_copy(row);
+        json_put(row, "run=%s", basename(json_text(row, "run")));
+        json_put(row, " =%s", json_string_value(json_object_get(row, "reason")));
+        json_object_del(row, "hypervolume");
+        json_object_del(row, "reason");
+        json_array_append_new(table, row);
+    }
     return document_give(&d, args, err);
 }
 
@@ -187,22 +163,22 @@ static void say_run(Document *d, const char *folder, const Run *run, const Stand
         snprintf(more, sizeof more, " (process %ld on %s)", s->holder.pid, s->holder.host);
     else if (last && last->stopped[0])
         snprintf(more, sizeof more, " (%s)", last->stopped);
-    document_say(d, "h1", "%s: %s%s", folder, state_words(s->state), more);
+    document_add(d, "h1", "%s: %s%s", folder, state_words(s->state), more);
     json_object_del(described, "run");
     json_object_del(described, "state");
     json_object_del(described, "process");
     document_list(d, described);
     if (s->n_lost > 0)
-        document_say(d, "p", "its file `lock` says that %zu more evaluations were stored: run.sqlite-wal is missing",
+        document_say(d, "its file `lock` says that %zu more evaluations were stored: run.sqlite-wal is missing",
                      s->n_lost);
     *more = '\0';
     if (isfinite(e.busy))
         snprintf(more, sizeof more, "; threads %.1f %% busy", 100.0 * e.busy);
     if (isfinite(e.waiting))
-        document_say(d, "p", "wall time: %.1f %% waiting for simulations, %.1f %% surrogate, %.1f %% search%s",
+        document_say(d, "wall time: %.1f %% waiting for simulations, %.1f %% surrogate, %.1f %% search%s",
                      100.0 * e.waiting, 100.0 * e.surrogate, 100.0 * e.search, more);
     if (s->state == RUN_PAUSED || s->state == RUN_INTERRUPTED)
-        document_say(d, "p", "resume it with: imtet optimize %s", text_shell(folder, quoted));
+        document_say(d, "resume it with: imtet optimize %s", text_shell(folder, quoted));
 }
 
 static Status run(const Args *args, Err *err)
@@ -220,16 +196,14 @@ static Status run(const Args *args, Err *err)
     say_run(&d, folder, &run, &standing, json_copy(d.data));
     say_generations(&d, &run);
     if (args_has(args, "--json"))
-        json_put(describe_more(d.data, &run, &standing), "expected_gain=%g", expected);
-    if (status == STATUS_OK)
-        status = document_give(&d, args, err);
-    else
-        document_free(&d);
+        describe_more(d.data, &run, &standing);
+    if (args_has(args, "--json"))
+        json_put(d.data, "expected_gain=%g", expected);
+    THEN(status, document_give(&d, args, err));
+    document_free(&d);
     run_free(&run);
     return status;
 }
-
-static const ArgOption OPTIONS[] = {OPTION_JSON, OPTION_END};
 
 const Command CMD_STATUS = {
     .name = "status",
@@ -243,7 +217,10 @@ const Command CMD_STATUS = {
         "The run is only read, so it may be running in another terminal.\n\n"
         "For a folder of runs (default: `results`) it prints one line per run: running, finished, stopped\n"
         "(can be resumed) or interrupted (was killed, can be resumed too).",
-    .options = OPTIONS,
+    .options =
+        {
+            OPTION_JSON,
+        },
     .run = run,
     .only_reads = 1,
 };

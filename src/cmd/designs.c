@@ -11,26 +11,21 @@
 
 /* -- tables -------------------------------------------------------------------------------------------------------- */
 
-static int is_variable(const DesignSpace *space, const char *column)
-{
-    char name[TABLE_NAME_MAX] = "";
-    for (int v = 0; v < space->n_var && strcmp(name, column) != 0; v++)
-        design_variable_name(space, v, name);
-    return strcmp(name, column) == 0;
-}
-
 /* Of a table of a run the columns of variables alone, in their order; a gap that is none of them is no result. */
 static Status drop_results(Table *t, const char *path, const DesignSpace *space, Err *err)
 {
     size_t kept = 0;
-    char name[TABLE_NAME_MAX];
-    for (size_t c = 0; c < t->n_cols; c++)
-        if (strncmp(t->names[c], "gap", 3) == 0 && !is_variable(space, t->names[c]))
+    char name[TABLE_NAME_MAX] = "";
+    for (size_t c = 0; c < t->n_cols; c++) {
+        for (int v = 0; v < space->n_var && strcmp(name, t->names[c]) != 0; v++)
+            design_variable_name(space, v, name);
+        if (strncmp(t->names[c], "gap", 3) == 0 && strcmp(name, t->names[c]) != 0)
             return bad_data(
                 err,
                 "%s: column %s belongs to another building or other design.variables: a design of these %d floors "
                 "has no such column",
                 path, t->names[c], space->n_floors);
+    }
     for (int v = 0; v < space->n_var; v++) {
         design_variable_name(space, v, name);
         const int from = table_column(t, name);
@@ -52,67 +47,56 @@ long design_number(const Designs *d, size_t i)
     return d->id ? d->id[i] : (long)i + 1;
 }
 
-/* Row `row` becomes the only one. */
-static void keep_row(Designs *d, size_t row)
-{
-    const size_t n_var = d->space.n_var;
-    memmove(d->x, d->x + row * n_var, n_var * sizeof *d->x);
-    d->line[0] = d->line[row];
-    if (d->id)
-        d->id[0] = d->id[row];
-    d->n = 1;
-}
-
+/* The row of that number becomes the only one. */
 static Status choose_row(Designs *d, const char *path, const char *choice, Err *err)
 {
     char *end;
+    const size_t n_var = d->space.n_var;
     const long wanted = strtol(choice, &end, 10);
     if (end == choice || *end)
         return bad_data(err, "%s:%.40s: a design of a file is chosen by its %s", path, choice,
                         d->id ? "id" : "row, from 1");
     for (size_t i = 0; i < d->n; i++)
         if (design_number(d, i) == wanted) {
-            keep_row(d, i);
+            memmove(d->x, d->x + i * n_var, n_var * sizeof *d->x);
+            d->line[0] = d->line[i];
+            if (d->id)
+                d->id[0] = d->id[i];
+            d->n = 1;
             return STATUS_OK;
         }
     return bad_data(err, "%s: has no design %s%ld; it holds %zu", path, d->id ? "of id " : "", wanted, d->n);
 }
 
-/* The column id, of (t->n_rows) for the caller to free; NULL: there is none. */
-static Status take_ids(const Table *t, long **ids, Err *err)
-{
-    const int column = table_column(t, "id");
-    *ids = NULL;
-    if (column < 0)
-        return STATUS_OK;
-    TRY_ROOM(*ids, t->n_rows + 1, "designs", err);
-    for (size_t i = 0; i < t->n_rows; i++)
-        (*ids)[i] = (long)t->values[i * t->n_cols + column];
-    return STATUS_OK;
-}
-
+/* A table with a column id is one of a run. */
 static Status take_file(Designs *d, const char *path, const char *choice, const DesignSpace *space, Err *err)
 {
     Table t;
     long *ids = NULL;
-    const Status there = design_table_read(&t, path, space, err);
-    if (there == STATUS_MISSING && !strchr(path, '/') && !choice)
-        return fail(err, there, "--design %s: there is no such file; a design is " DESIGN_WORDS, path);
-    TRY(there);
-    Status status = take_ids(&t, &ids, err);
-    if (status == STATUS_OK && ids)
-        status = drop_results(&t, path, space, err);
+    Status status = design_table_read(&t, path, space, err);
+    if (status == STATUS_MISSING && !strchr(path, '/') && !choice)
+        return fail(err, status, "--design %s: there is no such file; a design is " DESIGN_WORDS, path);
+    TRY(status);
+    const int column = table_column(&t, "id");
+    if (column >= 0) {
+        ids = calloc(t.n_rows + 1, sizeof *ids);
+        for (size_t i = 0; ids && i < t.n_rows; i++)
+            ids[i] = (long)t.values[i * t.n_cols + column];
+        status = ids ? drop_results(&t, path, space, err) : fail_memory(err, t.n_rows, "designs");
+    }
     THEN(status, design_of_table(d, &t, path, space, err));
     table_free(&t);
-    if (status != STATUS_OK) {
-        free(ids);
-        return status;
-    }
     d->id = ids;
-    return choice ? choose_row(d, path, choice, err) : STATUS_OK;
+    return choice && status == STATUS_OK ? choose_row(d, path, choice, err) : status;
 }
 
 /* -- runs ---------------------------------------------------------------------------------------------------------- */
+
+typedef struct {
+    char path[PATH_MAX];
+    const char *choice; /* behind the last colon; of a run the knee where there is none, else NULL */
+    int is_run;
+} Place;
 
 static Status copy_row(Designs *d, const Run *run, size_t row, Err *err)
 {
@@ -152,51 +136,34 @@ void known_of_run(const Run *run, size_t row, Known known[])
         known[s->order.of[k]] = (Known){run_result(run, row, k), run->table.row[row].err[k]};
 }
 
-/* What is simulated then is not what the run knows of the design. */
-static void tell_changed(const Settings *s, const Run *run)
-{
-    Err why = {0};
-    if (record_paths_check(s, run, &why) == STATUS_BAD_DATA)
-        fprintf(stderr, "note: %s\n", why.text);
-}
-
-/* What the run knows of the design, said where it takes other steps than its settings. */
-static void take_known(const Run *run, size_t row, SimOptions *sim, Known known[])
-{
-    const Evaluation *e = &run->table.row[row];
-    const double before = sim->steps_per_contact;
-    run_steps(run, row, sim);
-    if (sim->steps_per_contact != before)
-        fprintf(stderr, "design %ld: simulated with %g times the steps of sim.accuracy, as in the run\n", e->id,
-                ldexp(1.0, (int)e->level));
-    if (known)
-        known_of_run(run, row, known);
-}
-
-static Status take_from_run(Designs *d, const char *folder, const char *choice, const DesignSpace *space, Settings *s,
-                            int as_known, Known known[], Err *err)
+/* Said is where a motion has changed, for then the run knows of another simulation, and where the run knows the design
+ * by other steps than those of its settings. */
+static Status take_from_run(Designs *d, const Place *p, const DesignSpace *space, Settings *s, int as_known,
+                            Known known[], Err *err)
 {
     Run run;
     size_t row;
-    TRY(run_read(&run, folder, err));
-    Status status = run_pick(&run, choice ? choice : "knee", &row, err);
-    THEN(status, check_space(&run, folder, space, err));
+    Err why = {0};
+    TRY(run_read(&run, p->path, err));
+    Status status = run_pick(&run, p->choice, &row, err);
+    THEN(status, check_space(&run, p->path, space, err));
     THEN(status, copy_row(d, &run, row, err));
-    if (status == STATUS_OK && s)
-        tell_changed(s, &run);
-    if (status == STATUS_OK && as_known)
-        take_known(&run, row, &s->sim, known);
+    if (status == STATUS_OK && s && record_paths_check(s, &run, &why) == STATUS_BAD_DATA)
+        fprintf(stderr, "note: %s\n", why.text);
+    if (status == STATUS_OK && s && as_known) {
+        const double before = s->sim.steps_per_contact;
+        run_steps(&run, row, &s->sim);
+        if (s->sim.steps_per_contact != before)
+            fprintf(stderr, "design %ld: simulated with %g times the steps of sim.accuracy, as in the run\n", *d->id,
+                    ldexp(1.0, (int)run.table.row[row].level));
+        if (known)
+            known_of_run(&run, row, known);
+    }
     run_free(&run);
     return status;
 }
 
 /* -- words --------------------------------------------------------------------------------------------------------- */
-
-typedef struct {
-    char path[PATH_MAX];
-    const char *choice; /* behind the last colon; NULL: there is none */
-    int is_run;
-} Place;
 
 static int is_there(const char *word, size_t length, Place *p)
 {
@@ -217,6 +184,8 @@ static void find_place(const char *word, Place *p)
         p->choice = colon + 1;
     }
     p->is_run = run_drop_name(p->path) || run_is_there(p->path);
+    if (p->is_run && !p->choice)
+        p->choice = "knee";
 }
 
 Status designs_take(Designs *d, const char *word, const DesignSpace *space, Settings *s, int as_known, Known known[],
@@ -230,8 +199,8 @@ Status designs_take(Designs *d, const char *word, const DesignSpace *space, Sett
     find_place(word, &p);
     if (!p.is_run && stat(p.path, &there) == 0 && S_ISDIR(there.st_mode))
         return fail(err, STATUS_MISSING, "%.200s: holds no run: run.sqlite is missing", p.path);
-    const Status status = p.is_run ? take_from_run(d, p.path, p.choice, space, s, as_known, known, err)
-                                   : take_file(d, p.path, p.choice, space, err);
+    const Status status =
+        p.is_run ? take_from_run(d, &p, space, s, as_known, known, err) : take_file(d, p.path, p.choice, space, err);
     if (status != STATUS_OK)
         design_free(d);
     return status;
@@ -239,26 +208,22 @@ Status designs_take(Designs *d, const char *word, const DesignSpace *space, Sett
 
 /* -- of problems that are no tower --------------------------------------------------------------------------------- */
 
-static Status take_row(Designs *d, const char *folder, const char *choice, const Schema *schema, Err *err)
-{
-    Run run;
-    size_t row;
-    TRY(run_read(&run, folder, err));
-    Status status = run_pick(&run, choice ? choice : "knee", &row, err);
-    THEN(status, initial_designs_fit(&run, "--design", schema, err));
-    THEN(status, copy_row(d, &run, row, err));
-    d->space.n_var = (int)schema->n_var;
-    run_free(&run);
-    return status;
-}
-
 Status designs_of_problem(Designs *d, const char *word, const Schema *schema, Err *err)
 {
     Place p;
+    Run run;
+    size_t row;
     *d = (Designs){0};
     find_place(word, &p);
-    if (p.is_run)
-        return take_row(d, p.path, p.choice, schema, err);
+    if (p.is_run) {
+        TRY(run_read(&run, p.path, err));
+        Status status = run_pick(&run, p.choice, &row, err);
+        THEN(status, initial_designs_fit(&run, "--design", schema, err));
+        THEN(status, copy_row(d, &run, row, err));
+        d->space.n_var = (int)schema->n_var;
+        run_free(&run);
+        return status;
+    }
     TRY(initial_designs_read("--design", p.path, schema, &d->x, &d->n, err));
     d->space.n_var = (int)schema->n_var;
     TRY_ROOM(d->line, d->n, "designs", err);
@@ -310,19 +275,15 @@ static size_t row_of(const Run *run, const double x[])
     return run->table.n;
 }
 
-/* What only a run can have. */
-static int is_name(const char *word)
-{
-    return strspn(word, "0123456789") == strlen(word) || strcmp(word, "knee") == 0 || strncmp(word, "best_", 5) == 0;
-}
-
 Status design_of_run(const Run *run, const char *word, size_t *row, Designs *elsewhere, Err *err)
 {
     struct stat s;
     Designs d;
+    const int is_name = strspn(word, "0123456789") == strlen(word) || strcmp(word, "knee") == 0 ||
+                        strncmp(word, "best_", 5) == 0; /* what only a run can have */
     if (elsewhere)
         *elsewhere = (Designs){0};
-    if (is_name(word) || (!strpbrk(word, "/:.") && stat(word, &s) != 0))
+    if (is_name || (!strpbrk(word, "/:.") && stat(word, &s) != 0))
         return run_pick(run, word, row, err);
     TRY(designs_take_one(&d, word, &run->schema.design, NULL, 0, NULL, err));
     *row = row_of(run, d.x);

@@ -37,7 +37,7 @@ void document_free(Document *d)
     *d = (Document){0};
 }
 
-void document_say(Document *d, const char *element, const char *format, ...)
+void document_add(Document *d, const char *element, const char *format, ...)
 {
     va_list list;
     char *words = NULL, *line, *rest;
@@ -274,14 +274,6 @@ static Words words_of(const char *name)
     return (Words){name, "", 1};
 }
 
-static void print_head(FILE *out, const char *name)
-{
-    char head[CELL_MAX];
-    const Words w = words_of(name);
-    snprintf(head, sizeof head, *w.unit ? "%s [%s]" : "%s", w.title, w.unit);
-    print_element(out, "th", head);
-}
-
 /* row NULL: the names. Of the columns the first, and those from `from` on before `to`. Words stand left, in the first
  * column and in those whose name begins with a blank. */
 static void print_row(FILE *out, json_t *columns, const json_t *row, size_t from, size_t to, int is_html)
@@ -295,16 +287,18 @@ static void print_row(FILE *out, json_t *columns, const json_t *row, size_t from
         const size_t at = i++;
         const int is_words = *name == ' ', is_head = !row || at == 0;
         const double factor = is_html ? words_of(name).factor * words_of(head ? head : "").factor : 1;
-        char text[CELL_MAX];
+        char text[CELL_MAX], head_text[CELL_MAX];
         if (at > 0 && (at < from || at >= to))
             continue;
         snprintf(text, sizeof text, "%s", name);
         if (row)
             cell_words(name, json_object_get(row, name), factor, text);
         const int blanks = (int)json_integer_value(width) - width_of(text, CELL_MAX);
-        if (is_html && is_head)
-            print_head(out, text);
-        else if (is_html)
+        if (is_html && is_head) {
+            const Words w = words_of(text);
+            snprintf(head_text, sizeof head_text, *w.unit ? "%s [%s]" : "%s", w.title, w.unit);
+            print_element(out, "th", head_text);
+        } else if (is_html)
             print_element(out, is_words ? "td class=\"words\"" : "td", text);
         pending += at == 0 ? 0 : is_words ? 2 : 2 + blanks;
         if (!is_html && *text) {
@@ -316,23 +310,7 @@ static void print_row(FILE *out, json_t *columns, const json_t *row, size_t from
     fputs(is_html ? "</tr>\n<tr>" : "\n", out);
 }
 
-/* Words that are too wide to stand beside the first column stand behind it. */
-static void print_notes(FILE *out, json_t *table, const char *column, int most)
-{
-    size_t r;
-    json_t *row;
-    json_array_foreach(table, r, row)
-    {
-        const char *note = json_string_value(json_object_get(row, column));
-        char first[CELL_MAX], text[2 * CELL_MAX];
-        cell_words("", json_object_iter_value(json_object_iter(row)), 1, first);
-        snprintf(text, sizeof text, "%s: %s", first + strspn(first, " "), note ? note : "");
-        if (note && *note)
-            print_words(out, text, 0, most);
-    }
-}
-
-/* In bands of as many columns as fit beside the first. */
+/* In bands of as many columns as fit beside the first; words that are too wide for that stand behind it. */
 static void print_table(FILE *out, json_t *table, int most, int is_html)
 {
     json_t *columns = columns_of(table), *row, *width;
@@ -353,7 +331,15 @@ static void print_table(FILE *out, json_t *table, int most, int is_html)
         }
         fputs(is_html ? "<table>\n<tr>" : from > 1 ? "\n" : "", out);
         if (wide && *first == ' ') {
-            print_notes(out, table, first, most);
+            json_array_foreach(table, r, row)
+            {
+                const char *note = json_string_value(json_object_get(row, first));
+                char label[CELL_MAX], text[2 * CELL_MAX];
+                cell_words("", json_object_iter_value(json_object_iter(row)), 1, label);
+                snprintf(text, sizeof text, "%s: %s", label + strspn(label, " "), note ? note : "");
+                if (note && *note)
+                    print_words(out, text, 0, most);
+            }
             continue;
         }
         if (has_names)
@@ -365,7 +351,7 @@ static void print_table(FILE *out, json_t *table, int most, int is_html)
 }
 
 /* As text with a blank line before and behind tables, and where one kind of words follows another. */
-static void print_parts(Document *d, FILE *out, int is_html)
+void document_print(Document *d, FILE *out, int is_html)
 {
     const int width = is_html ? INT_MAX : terminal_width(fileno(out));
     const char *kind, *before = "", *words;
@@ -391,16 +377,6 @@ static void print_parts(Document *d, FILE *out, int is_html)
         before = kind;
     }
     document_free(d);
-}
-
-void document_print(Document *d, FILE *out)
-{
-    print_parts(d, out, 0);
-}
-
-void document_html(Document *d, FILE *out)
-{
-    print_parts(d, out, 1);
 }
 
 /* ---- files ------------------------------------------------------------------------------------------------------- */
@@ -469,7 +445,7 @@ Status document_give(Document *d, const Args *args, Err *err)
     if (args_has(args, "--json"))
         THEN(status, show_json(json_incref(d->data), err));
     if (status == STATUS_OK && !outputs_standard(args, 0))
-        document_print(d, stdout);
+        document_print(d, stdout, 0);
     document_free(d);
     return status;
 }

@@ -12,7 +12,7 @@
  *   JSON     `data`
  *   drawing  `drawing`, one of DRAWINGS of web/app/8-paper.js
  *
- * Ownership  json_t that are given are taken over; document_give, _print and _html release all of it,
+ * Ownership  json_t that are given are taken over; document_give and document_print release all of it,
  *            after which the Document is empty */
 #pragma once
 
@@ -26,8 +26,10 @@ typedef struct {
     int width; /* [px] */
 } Document;
 
-/* element: of HTML, p, h1, h2, li, code; "note": a paragraph in small. Every line becomes one, an empty one none. */
-__attribute__((format(printf, 3, 4))) void document_say(Document *d, const char *element, const char *format, ...);
+/* Words: a paragraph, or what `element` says, h1, h2, li, code of HTML, "note": a paragraph in small. Every line
+ * becomes one, an empty one none. */
+__attribute__((format(printf, 3, 4))) void document_add(Document *d, const char *element, const char *format, ...);
+#define document_say(d, ...) document_add(d, "p", __VA_ARGS__)
 
 json_t *document_table(Document *d);        /* an empty one, borrowed; without rows it is not shown */
 void document_list(Document *d, json_t *o); /* a line for every member that is neither empty nor rows */
@@ -35,8 +37,7 @@ void document_draw(Document *d, const char *name, const char *caption); /* DRAWI
 
 /* Writes what the options ask for, --csv, --svg, --json, and the text if standard output is free. */
 Status document_give(Document *d, const Args *args, Err *err);
-void document_print(Document *d, FILE *out);
-void document_html(Document *d, FILE *out);
+void document_print(Document *d, FILE *out, int is_html);
 void document_free(Document *d);
 
 /* Help: an example, the details and every option, wrapped to the terminal. */
@@ -55,6 +56,7 @@ json_t *figures_row(json_t *table); /* a further one */
 /* A figure (base/figure.h). error: the likely one; sd: standard deviation; NAN: not known. word: in the place of "sd";
  * "(": "value (error to sd)". */
 void figures_put(json_t *row, const char *column, double value, double error, double sd);
+#define figures_number(row, column, value) figures_put(row, column, value, NAN, NAN)
 void figures_put_as(json_t *row, const char *column, double value, double error, double sd, const char *word);
 
 Status rows_write(json_t *table, const char *path, Err *err); /* as CSV */

@@ -61,8 +61,8 @@ static void say_summary(Dossier *o)
     char now[24], rule[RULE_WORDS_MAX];
     utc_now(now);
     words_of_rule(o->s, rule);
-    document_say(doc, "h1", "Design %ld of %s", run->table.row[o->r->chosen].id, run->folder);
-    document_say(doc, "note", "imtet %s (%s), %s. Found in %zu simulated designs, %zu of them nondominated.",
+    document_add(doc, "h1", "Design %ld of %s", run->table.row[o->r->chosen].id, run->folder);
+    document_add(doc, "note", "imtet %s (%s), %s. Found in %zu simulated designs, %zu of them nondominated.",
                  program_version(), program_revision(), now, run->table.n, run->n_front);
     document_verdict(doc, run, o->r->chosen, o->s);
     json_t *table = document_table(doc);
@@ -72,15 +72,14 @@ static void say_summary(Dossier *o)
     if (o->n_records > 1)
         figures_design(table, "its standard error over the records", 0, schema, error, NULL, NULL, NULL);
     figures_baselines(table, schema, o->d->baseline);
-    document_say(doc, "p", "Values as the study judges them: %s%s.", *rule ? rule : o->record,
+    document_say(doc, "Values as the study judges them: %s%s.", *rule ? rule : o->record,
                  run->table.row[o->r->chosen].kind == KIND_SCREENED
                      ? ", of which this design, only screened, has seen a part"
                      : "");
     document_say(
-        doc, "p",
-        "Behind the sign stands the error of the integration, which 95 %% of such figures keep. The other rows "
-        "use the same core: without gaps, as a mass at the roof (frequency and damping optimized), and with a "
-        "dashpot on every floor (one constant, optimized).");
+        doc, "Behind the sign stands the error of the integration, which 95 %% of such figures keep. The other rows "
+             "use the same core: without gaps, as a mass at the roof (frequency and damping optimized), and with a "
+             "dashpot on every floor (one constant, optimized).");
 }
 
 static void say_building(Dossier *o)
@@ -92,7 +91,7 @@ static void say_building(Dossier *o)
     const Settings *s = o->s;
     const int has_frame = frame_is(s->building.model);
     json_t *drawn = NULL;
-    document_say(&o->doc, "h2", "Building, core and ground motion");
+    document_add(&o->doc, "h2", "Building, core and ground motion");
     Status status = building_load(&b, &s->building, &e);
     if (has_frame)
         THEN(status, frame_read(&frame, &s->building, &e));
@@ -113,7 +112,7 @@ static void say_building(Dossier *o)
         document_draw(&o->doc, "panels",
                       "The building to scale; its first mode shapes with period and share of the mass.");
     }
-    document_say(&o->doc, "p", "%s", e.text);
+    document_say(&o->doc, "%s", e.text);
     building_free(&b);
     frame_free(&frame);
 }
@@ -125,7 +124,7 @@ static void say_design(Dossier *o)
     const SimResult *r = &d->result[SCENE_IMPACT];
     Design design;
     design_of(&o->r->run->schema.design, o->x, &design);
-    document_say(&o->doc, "h2", "The design");
+    document_add(&o->doc, "h2", "The design");
     document_draw(&o->doc, "gaps", "");
     json_t *table = document_table(&o->doc);
     for (int j = 0; j < d->n_floors; j++) {
@@ -145,34 +144,32 @@ static void say_design(Dossier *o)
         json_t *row = has_stop || design_has_link(&design, j) ? json_put(figures_row(table), "floor=%d", j + 1) : NULL;
         for (size_t k = 0; row && k < N_OF(cells); k++)
             if (cells[k].value > 0 && isfinite(cells[k].value))
-                figures_put(row, cells[k].column, cells[k].value, NAN, NAN);
+                figures_number(row, cells[k].column, cells[k].value);
     }
     if (design.mass_kg > 0)
-        document_say(&o->doc, "p", "Tuned mass: force %.3g MN, stroke %.3g mm.", 1e-6 * r->device[FLOORS_MAX].force,
+        document_say(&o->doc, "Tuned mass: force %.3g MN, stroke %.3g mm.", 1e-6 * r->device[FLOORS_MAX].force,
                      1e3 * r->device[FLOORS_MAX].stroke);
-    document_say(&o->doc, "p", "Forces and strokes under %s.", o->record);
+    document_say(&o->doc, "Forces and strokes under %s.", o->record);
 }
 
 /* ---- how it responds ------------------------------------------------------------------------------------------- */
 
-static Status simulate_with(const Dossier *o, const char *key, const char *value, SimResult *out, Err *err)
+/* The response by another value of a setting, with its steps and not those by which the run knows the design. */
+static void add_with(Dossier *o, json_t *table, const char *label, const char *key, const char *value)
 {
     Settings s = *o->s;
     Problem p;
-    s.sim.steps_per_contact = 0; /* those of the value, and not those by which the run knows the design */
-    TRY(settings_put(&s, key, value, err));
-    TRY(settings_check(&s, err));
-    TRY(tower_open(&p, &s, TOWER_SINGLE, 1, err));
-    const Status status = tower_simulate(&p, 1, &(SimTask){.kind = SCENE_IMPACT, .x = o->x}, out, err);
-    problem_close(&p);
-    return status;
-}
-
-static void add_with(Dossier *o, json_t *table, const char *label, const char *key, const char *value)
-{
     SimResult r = {0};
     Err e = {0};
-    if (simulate_with(o, key, value, &r, &e) == STATUS_OK)
+    s.sim.steps_per_contact = 0;
+    Status status = settings_put(&s, key, value, &e);
+    THEN(status, settings_check(&s, &e));
+    THEN(status, tower_open(&p, &s, TOWER_SINGLE, 1, &e));
+    if (status == STATUS_OK) {
+        status = tower_simulate(&p, 1, &(SimTask){.kind = SCENE_IMPACT, .x = o->x}, &r, &e);
+        problem_close(&p);
+    }
+    if (status == STATUS_OK)
         add_response(o, table, label, &r);
     else
         json_put(json_put(figures_row(table), "=%s", label), " =%s", e.text);
@@ -183,7 +180,7 @@ static void say_response(Dossier *o)
     FullModel m = {0};
     Err e = {0};
     char label[64];
-    document_say(&o->doc, "h2", "The response by four calculations");
+    document_add(&o->doc, "h2", "The response by four calculations");
     json_t *table = document_table(&o->doc);
     add_response(o, table, "as the study knows it", &o->d->result[SCENE_IMPACT]);
     add_with(o, table, "accuracy fine", "sim.accuracy", "fine");
@@ -194,7 +191,7 @@ static void say_response(Dossier *o)
     }
     full_model_free(&m);
     document_say(
-        &o->doc, "p",
+        &o->doc,
         "All under %s. CVODE integrates the equations of motion without the study's engine. Contacts that graze "
         "may separate two calculations: J3 is then the least certain figure. %s",
         o->record, e.text);
@@ -205,34 +202,16 @@ static void say_response(Dossier *o)
 
 /* ---- what it has to bear --------------------------------------------------------------------------------------- */
 
-/* The study's limits, on what it judged: of several simulations none by itself. */
-static void say_limits(Dossier *o)
-{
-    const Run *run = o->r->run;
-    Limits l = {0};
-    if (limits_read(&l, &run->schema, o->s->search.limits, NULL) != STATUS_OK || l.n == 0)
-        document_say(&o->doc, "p", "The study sets no limits.");
-    json_t *table = document_table(&o->doc);
-    for (size_t i = 0; i < l.n; i++) {
-        const Limit *limit = &l.limit[i];
-        const double value = run_result(run, o->r->chosen, limit->result);
-        const int keeps = limit->sign * (value - limit->bound) <= 0;
-        char text[64];
-        snprintf(text, sizeof text, "%s %.4g",
-                 limit->sign > 0 ? "<=" : ">=", words_of_objective(&run->schema, limit->result).factor * limit->bound);
-        json_t *row = json_put(figures_row(table), "=%s", schema_objective(&run->schema, limit->result)->name);
-        figures_put(row, "as the study judges it", value, NAN, NAN);
-        json_put(row, " limit of the study=%s", text);
-        json_put(row, " verdict=%s", isnan(value) ? "not known" : keeps ? "kept" : "exceeded");
-    }
-}
-
+/* What it reaches, the study's limits on what it judged (of several simulations none by itself), and idle stops. */
 static void say_demand(Dossier *o)
 {
+    Document *doc = &o->doc;
+    const Run *run = o->r->run;
     int borne[MEASURES_LISTED];
-    char most[64], first[220], never[5 * FLOORS_MAX + 16] = "";
-    document_say(&o->doc, "h2", "Forces and stresses, with their limits");
-    json_t *table = document_table(&o->doc);
+    char most[64], first[220], never[5 * FLOORS_MAX + 16] = "", text[64];
+    Limits l = {0};
+    document_add(doc, "h2", "Forces and stresses, with their limits");
+    json_t *table = document_table(doc);
     snprintf(most, sizeof most, "largest of %zu records", o->n_records);
     snprintf(first, sizeof first, "under %s", o->record);
     for (int i = 0; i < measures_borne(borne); i++) {
@@ -241,10 +220,23 @@ static void say_demand(Dossier *o)
             continue;
         json_t *row = json_put(figures_row(table), "=%s", measure(borne[i])->name);
         if (o->n_records > 1)
-            figures_put(row, most, all, NAN, NAN);
+            figures_number(row, most, all);
         figures_put(row, first, measure_value(o->by_record, borne[i]), o->d->error[borne[i]], NAN);
     }
-    say_limits(o);
+    if (limits_read(&l, &run->schema, o->s->search.limits, NULL) != STATUS_OK || l.n == 0)
+        document_say(doc, "The study sets no limits.");
+    table = document_table(doc);
+    for (size_t i = 0; i < l.n; i++) {
+        const Limit *limit = &l.limit[i];
+        const double value = run_result(run, o->r->chosen, limit->result);
+        const int keeps = limit->sign * (value - limit->bound) <= 0;
+        snprintf(text, sizeof text, "%s %.4g",
+                 limit->sign > 0 ? "<=" : ">=", words_of_objective(&run->schema, limit->result).factor * limit->bound);
+        json_t *row = json_put(figures_row(table), "=%s", schema_objective(&run->schema, limit->result)->name);
+        figures_number(row, "as the study judges it", value);
+        json_put(row, " limit of the study=%s", text);
+        json_put(row, " verdict=%s", isnan(value) ? "not known" : keeps ? "kept" : "exceeded");
+    }
     for (int j = 0; j < o->d->n_floors; j++) {
         size_t i = 0;
         while (i < o->n_records && o->by_record[i].closings[j] == 0)
@@ -252,69 +244,64 @@ static void say_demand(Dossier *o)
         if (i == o->n_records && o->d->gap_m[j] < INFINITY)
             snprintf(never + strlen(never), 16, "%s%d", *never ? ", " : "", j + 1);
     }
-    document_say(&o->doc, "p", "Stops that never close%s, on floors: %s.",
-                 o->n_records > 1 ? " under any of these records" : "", *never ? never : "none");
-    document_draw(&o->doc, "forces", "");
+    document_say(doc, "Stops that never close%s, on floors: %s.", o->n_records > 1 ? " under any of these records" : "",
+                 *never ? never : "none");
+    document_draw(doc, "forces", "");
 }
 
 /* ---- other earthquakes ----------------------------------------------------------------------------------------- */
 
-static void say_records(Dossier *o)
+/* Records one by one; then all at every level, with the fragility of a drift ratio of 2 %. */
+static void say_records(Dossier *o, size_t n, const char *const records[])
 {
+    Document *doc = &o->doc;
+    const Detail *d = o->d;
     char label[200];
-    document_say(&o->doc, "h2", "Records one by one");
-    json_t *table = document_table(&o->doc);
-    for (size_t i = 0; i <= o->d->n_elsewhere; i++) {
-        const Elsewhere *e = i ? &o->d->elsewhere[i - 1] : NULL;
-        snprintf(label, sizeof label, "%.120s, %.3g g", basename(e ? e->record : o->d->record),
-                 e ? e->pga_g : o->d->pga_g);
-        add_response(o, table, label, e ? &e->with_core : &o->d->result[SCENE_IMPACT]);
-        add_response(o, table, "  no core", e ? &e->no_core : &o->d->result[SCENE_NO_CORE]);
-    }
-    document_say(&o->doc, "p",
-                 "The records of the study come first. builtin: motions are synthetic: judge by records.");
-}
-
-/* All records at every level, with the fragility of a drift ratio of 2 %. */
-static void say_intensities(Dossier *o, size_t n, const char *const records[])
-{
     double level[LEVELS];
     Evaluations e = {.n_levels = LEVELS, .level = level, .intensity = "pga_g"};
     Settings s = *o->s;
     Err why = {0};
     Fragilities f = {0};
+    MeasureOrder shown;
+    document_add(doc, "h2", "Records one by one");
+    json_t *table = document_table(doc);
+    for (size_t i = 0; i <= d->n_elsewhere; i++) {
+        const Elsewhere *at = i ? &d->elsewhere[i - 1] : NULL;
+        snprintf(label, sizeof label, "%.120s, %.3g g", basename(at ? at->record : d->record),
+                 at ? at->pga_g : d->pga_g);
+        add_response(o, table, label, at ? &at->with_core : &d->result[SCENE_IMPACT]);
+        add_response(o, table, "  no core", at ? &at->no_core : &d->result[SCENE_NO_CORE]);
+    }
+    document_say(doc, "The records of the study come first. builtin: motions are synthetic: judge by records.");
+    document_add(doc, "h2", "Against intensity");
     for (size_t l = 0; l < LEVELS; l++)
         level[l] = LEVEL_STEP_G * (double)(l + 1);
-    document_say(&o->doc, "h2", "Against intensity");
     s.sim.forces = FORCES_AUTO;
     Status status = fragilities_read(&f, &o->r->run->schema, "drift_ratio=0.02", NULL, e.intensity, &s, &why);
+    THEN(status, measures_order(&shown, "j1_m,drift_ratio,j3_g", "none", 0, &why));
     THEN(status, evaluations_add(&e, o->s->motion.record, 1, &why));
     for (size_t i = 0; i < n; i++)
         THEN(status, evaluations_add(&e, records[i], 1, &why));
     THEN(status, evaluations_read(&e, &s, &why));
     THEN(status, evaluations_run(&e, o->r->run->schema.n_var, o->x, NULL, &why));
     if (status == STATUS_OK) {
-        MeasureOrder shown;
-        measures_order(&shown, "j1_m,drift_ratio,j3_g", "none", 0, &why);
-        document_ida(&o->doc, &e, &shown);
-        document_fragilities(&o->doc, &f, &e);
+        document_ida(doc, &e, &shown);
+        document_fragilities(doc, &f, &e);
     }
-    document_say(&o->doc, "p", "%s", why.text);
+    document_say(doc, "%s", why.text);
     evaluations_free(&e);
     fragilities_free(&f);
 }
-
-/* ---- what it hangs on ------------------------------------------------------------------------------------------ */
 
 static void say_sensitivities(Dossier *o)
 {
     Sensitivity *list = NULL;
     size_t n = 0;
     Err e = {0};
-    document_say(&o->doc, "h2", "What the figures depend on");
+    document_add(&o->doc, "h2", "What the figures depend on");
     if (sensitivity_find(o->s, o->x, 1, &list, &n, &e) == STATUS_OK)
         document_slopes(&o->doc, n, list);
-    document_say(&o->doc, "p", "%s", e.text);
+    document_say(&o->doc, "%s", e.text);
     free(list);
 }
 
@@ -325,38 +312,36 @@ static void say_not_covered(Dossier *o)
     const Settings *s = o->s;
     Document *doc = &o->doc;
     char text[UPLIFT_WORDS_MAX];
-    document_say(doc, "h2", "What is not covered");
-    document_say(doc, "li",
+    document_add(doc, "h2", "What is not covered");
+    document_add(doc, "li",
                  "Torsion other than by contacts off the centre, ground motion in two directions, vertical motion. "
                  "One contact per floor and side, without friction.");
-    document_say(doc, "li",
+    document_add(doc, "li",
                  "The mass of the core, %.0f t, is that of its %s, without %sdiaphragms or connections. Where the wall "
                  "buckles, the mass of stiffeners against it is missing here and in every objective.",
                  1e-3 * o->d->result[SCENE_IMPACT].mcore_kg,
                  s->core.stiffeners > 0 ? "walls and core.stiffeners" : "bare walls",
                  s->core.stiffeners > 0 ? "" : "stiffeners, ");
-    document_say(doc, "li",
+    document_add(doc, "li",
                  "Connections for these forces: stops, links, bearings, collectors that yield, floors as diaphragms, "
                  "local stresses and fatigue are not designed. Contact forces last milliseconds.");
     if (foundation_lifts(&o->d->result[SCENE_IMPACT]))
-        document_say(doc, "li", "Foundation: %s.", uplift_words(&o->d->result[SCENE_IMPACT], text));
+        document_add(doc, "li", "Foundation: %s.", uplift_words(&o->d->result[SCENE_IMPACT], text));
     if (strcmp(s->core.foundation, "fixed") == 0)
-        document_say(doc, "li",
+        document_add(doc, "li",
                      "The core is clamped: its foundation is taken to carry %.3g MN and %.4g MN m without moving.",
                      1e-6 * largest(o, MEASURE_CORE_SHEAR), 1e-6 * largest(o, MEASURE_CORE_OVERTURNING));
     if (!o->d->result[SCENE_IMPACT].yields)
-        document_say(doc, "li", "The tower is linear: nothing yields at any drift.");
+        document_add(doc, "li", "The tower is linear: nothing yields at any drift.");
     else
-        document_say(doc, "li", "The tower keeps the damping of its elastic modes while storeys yield.");
+        document_add(doc, "li", "The tower keeps the damping of its elastic modes while storeys yield.");
     if (!s->building.p_delta)
-        document_say(doc, "li", "P-delta is left out.");
-    document_say(doc, "li", "Comfort, sound, and damage to contents by accelerations of milliseconds.");
+        document_add(doc, "li", "P-delta is left out.");
+    document_add(doc, "li", "Comfort, sound, and damage to contents by accelerations of milliseconds.");
 }
 
-static void put_setting(const char *key, unsigned flags, const char *was, const char *is, void *user)
+static void put_setting(const char *key, unsigned, const char *, const char *is, void *user)
 {
-    (void)flags;
-    (void)was;
     json_object_set_new(user, key, json_words(is));
 }
 
@@ -366,17 +351,17 @@ static void say_provenance(Dossier *o)
     json_t *settings = json_object(), *from = json_loads(run->provenance, 0, NULL);
     Settings none;
     char path[PATH_MAX], used[4 * PATH_MAX + 3], folder[4 * PATH_MAX + 3];
-    document_say(&o->doc, "h2", "Provenance");
+    document_add(&o->doc, "h2", "Provenance");
     json_object_del(from, "flags");
     document_list(&o->doc, from);
     settings_defaults(&none);
     settings_compare(&none, run->settings, put_setting, settings);
-    document_say(&o->doc, "p",
+    document_say(&o->doc,
                  "Hashes are FNV-1a, 64 bit, of the bytes of the files. Settings that differ from their defaults:");
     document_list(&o->doc, settings);
     folder_path(run->folder, "settings.ini", path);
-    document_say(&o->doc, "p", "To repeat the row of accuracy fine:");
-    document_say(&o->doc, "code", "imtet simulate %s --design %s:%ld --set sim.accuracy=fine --json",
+    document_say(&o->doc, "To repeat the row of accuracy fine:");
+    document_add(&o->doc, "code", "imtet simulate %s --design %s:%ld --set sim.accuracy=fine --json",
                  text_shell(path, used), text_shell(run->folder, folder), run->table.row[o->r->chosen].id);
 }
 
@@ -394,50 +379,43 @@ Status dossier_check(const char *path, Err *err)
     return is_pdf(path) ? browser_check(path, err) : STATUS_OK;
 }
 
-static Status write_html(json_t *run, const char *body, const char *path, Err *err)
-{
-    Output o;
-    Status status = output_open(&o, path, err);
-    if (status != STATUS_OK)
-        json_decref(run);
-    return status == STATUS_OK ? output_end(&o, page_write(o.stream, run, NULL, body, err), err) : status;
-}
-
 Status dossier_write(const Report *r, const Settings *s, size_t n, const char *const records[], const char *path,
                      Err *err)
 {
     char *body = NULL;
     size_t length;
+    Output o;
     const Detail *d = &r->detail;
-    Dossier o = {.r = r, .d = d, .s = s, .x = run_x(r->run, r->chosen), .n_records = d->n_records};
-    TRY(measures_order(&o.order, RESPONSE, "none", 0, err));
+    Dossier all = {.r = r, .d = d, .s = s, .x = run_x(r->run, r->chosen), .n_records = d->n_records};
+    TRY(measures_order(&all.order, RESPONSE, "none", 0, err));
     FILE *out = text_open(&body, &length);
     if (!out)
         return fail_memory(err, 1, "a dossier");
-    o.drawings = json_object();
-    o.by_record = d->by_record ? d->by_record : &d->result[SCENE_IMPACT];
-    snprintf(o.record, sizeof o.record, o.n_records > 1 ? "%s, the first of %zu records" : "%s", d->record,
-             o.n_records);
-    say_summary(&o);
-    say_building(&o);
-    say_design(&o);
-    say_response(&o);
-    say_demand(&o);
-    document_say(&o.doc, "h2", "Which effects the model needs");
+    all.drawings = json_object();
+    all.by_record = d->by_record ? d->by_record : &d->result[SCENE_IMPACT];
+    snprintf(all.record, sizeof all.record, all.n_records > 1 ? "%s, the first of %zu records" : "%s", d->record,
+             all.n_records);
+    say_summary(&all);
+    say_building(&all);
+    say_design(&all);
+    say_response(&all);
+    say_demand(&all);
+    document_add(&all.doc, "h2", "Which effects the model needs");
     if (d->ladder || d->no_ladder.text[0])
-        document_draw(&o.doc, "ladder", "");
-    say_records(&o);
-    say_intensities(&o, n, records);
-    say_sensitivities(&o);
-    say_not_covered(&o);
-    say_provenance(&o);
+        document_draw(&all.doc, "ladder", "");
+    say_records(&all, n, records);
+    say_sensitivities(&all);
+    say_not_covered(&all);
+    say_provenance(&all);
     fputs("<main class=\"paper\">\n", out);
-    document_html(&o.doc, out);
+    document_print(&all.doc, out, 1);
     fputs("</main>\n", out);
-    json_t *run = json_put(report_json(r), "paper=%p drawings=%p", json_array(), o.drawings);
+    json_t *run = json_put(report_json(r), "paper=%p drawings=%p", json_array(), all.drawings);
     Status status = text_close(out) ? fail_memory(err, 1, "a dossier") : STATUS_OK;
-    if (status == STATUS_OK)
-        status = (is_pdf(path) ? page_print : write_html)(run, body, path, err);
+    if (status == STATUS_OK && is_pdf(path))
+        status = page_print(run, body, path, err);
+    else if (status == STATUS_OK && (status = output_open(&o, path, err)) == STATUS_OK)
+        status = output_end(&o, page_write(o.stream, run, NULL, body, err), err);
     else
         json_decref(run);
     free(body);

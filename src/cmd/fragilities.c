@@ -168,43 +168,6 @@ static Curve curve_of(const Fragilities *f, const Evaluations *e, const Limit *l
     return c;
 }
 
-/* Why the median is not known, and what helps. */
-static void unknown_words(const Curve *c, char text[4 * FIGURE_MAX])
-{
-    const double from = c->fit.between[0], to = c->fit.between[1];
-    if (c->n == 0 || c->hits == 0 || c->hits == c->n)
-        snprintf(text, 4 * FIGURE_MAX, "%s", c->n == 0 ? "-" : c->hits == 0 ? "never" : "always");
-    else if (isnan(from))
-        snprintf(text, 4 * FIGURE_MAX, "not rising with intensity");
-    else if (from > 0 && isfinite(to))
-        snprintf(text, 4 * FIGURE_MAX, "between %g and %g: finer steps", from, to);
-    else if (isfinite(to))
-        snprintf(text, 4 * FIGURE_MAX, "below %g: begin lower", to);
-    else
-        snprintf(text, 4 * FIGURE_MAX, "above %g: end higher", from);
-}
-
-static void add_row(const Fragilities *f, const Evaluations *e, const Curve *c, json_t *table)
-{
-    char text[4 * FIGURE_MAX], column[64];
-    snprintf(text, sizeof text, c->scene ? "%s%s%g" : "%s", c->name, c->relation, c->bound);
-    json_t *row = json_put(figures_row(table), "limit=%s scene=%s", text, c->scene ? c->scene->words : NULL);
-    snprintf(column, sizeof column, "median %s (95 %%)", e->intensity);
-    figures_put_as(row, column, c->fit.median, c->low, c->high, "(");
-    unknown_words(c, text);
-    if (isnan(c->fit.median))
-        json_object_set_new(row, column, json_string(text));
-    figures_put(row, "beta", c->fit.beta, NAN, c->fit.sd_beta);
-    snprintf(text, sizeof text, "%zu of %zu", c->hits, c->n);
-    json_put(row, "exceeded=%s", text);
-    if (!f->hazard)
-        return;
-    figures_put(row, "per_year", c->rate, NAN, NAN);
-    figures_put(row, "in_50_years_pct", -100 * expm1(-YEARS * c->rate), NAN, NAN);
-    if (fragility_at(&c->fit, f->hazard[0]) > CUT_OFF_NOTICEABLE)
-        json_put(row, " =%s", "more often: the hazard curve begins too high");
-}
-
 static json_t *counts(size_t n, const size_t of[])
 {
     json_t *list = json_array();
@@ -213,65 +176,58 @@ static json_t *counts(size_t n, const size_t of[])
     return list;
 }
 
-static json_t *describe(const Fragilities *f, const Evaluations *e, const Curve *c)
-{
-    const double range[] = {c->low, c->high};
-    json_t *o = json_of("of=%s relation=%s bound=%g scene=%s median=%g median_95=%p beta=%g sd_ln_median=%g sd_beta=%g",
-                        c->name, c->relation, c->bound, c->scene ? c->scene->key : NULL, c->fit.median,
-                        json_numbers(2, range), c->fit.beta, c->fit.sd_ln_median, c->fit.sd_beta);
-    json_put(o, "median_between=%p simulations=%p exceeded=%p", json_numbers(2, c->fit.between),
-             counts(e->n_levels, c->n_at), counts(e->n_levels, c->exceeded));
-    if (f->hazard)
-        json_put(o, "rate_per_year=%g probability_50_years=%g probability_where_hazard_begins=%g", c->rate,
-                 -expm1(-YEARS * c->rate), fragility_at(&c->fit, f->hazard[0]));
-    return o;
-}
-
-/* Of one limit under one case; limit NULL: of counts. */
+/* Of one limit under one case; limit NULL: of counts. Where the median is not known it is said why, and what helps. */
 static void add_curve(const Fragilities *f, const Evaluations *e, const Limit *limit, SceneKind which, json_t *table,
                       json_t *list)
 {
     const Curve c = curve_of(f, e, limit, which);
-    json_t *o = describe(f, e, &c);
-    add_row(f, e, &c, table);
+    const Fragility *fit = &c.fit;
+    const double from = fit->between[0], to = fit->between[1], range[] = {c.low, c.high};
+    char text[4 * FIGURE_MAX], column[64];
+
+    /* 1. For programs. */
+    json_t *o = json_of("of=%s relation=%s bound=%g scene=%s median=%g median_95=%p beta=%g sd_ln_median=%g sd_beta=%g "
+                        "median_between=%p simulations=%p exceeded=%p",
+                        c.name, c.relation, c.bound, c.scene ? c.scene->key : NULL, fit->median, json_numbers(2, range),
+                        fit->beta, fit->sd_ln_median, fit->sd_beta, json_numbers(2, fit->between),
+                        counts(e->n_levels, c.n_at), counts(e->n_levels, c.exceeded));
+    if (f->hazard)
+        json_put(o, "rate_per_year=%g probability_50_years=%g probability_where_hazard_begins=%g", c.rate,
+                 -expm1(-YEARS * c.rate), fragility_at(fit, f->hazard[0]));
     json_array_append_new(list, limit ? put_device(o, which, &e->run[0].device[which]) : o);
-}
 
-/* ---- annual loss ------------------------------------------------------------------------------------------------- */
-
-/* How much of it is not of the levels, and what helps. */
-static json_t *describe_loss(const Fragilities *f, const Evaluations *e, const char *scene, const AnnualLoss *y)
-{
-    const double below = y->below / y->per_year, above = y->above / y->per_year;
-    const int is_low = below > OUTSIDE_NOTICEABLE, is_high = above > OUTSIDE_NOTICEABLE;
-    const int is_cut = f->hazard[0] >= e->level[0] && y->at_begin > OUTSIDE_NOTICEABLE * y->per_year;
-    char note[NOTE_MAX];
-    snprintf(note, sizeof note, "%s%s%s",
-             is_low   ? "begin lower"
-             : is_cut ? "more: the hazard curve begins too high"
-                      : "",
-             (is_low || is_cut) && is_high ? ", " : "", is_high ? "end higher" : "");
-    return json_of("scene=%s annual_loss=%g standard_error=%g share_below_first=%g share_above_last=%g failed=%zu "
-                   "note=%s",
-                   scene, y->per_year, y->error, below, above, y->n_failed, note);
-}
-
-/* Of every scene. */
-static json_t *annual_losses(const Fragilities *f, const Evaluations *e)
-{
-    json_t *list = json_array();
-    for (SceneKind k = 0; k < N_SCENES; k++) {
-        if (!evaluated_has(e, e->run, k))
-            continue;
-        const AnnualLoss y = ida_annual_loss(e, k, f->n_hazard, f->hazard);
-        json_array_append_new(list, describe_loss(f, e, SCENES[k].key, &y));
-    }
-    return list;
+    /* 2. For people. */
+    snprintf(text, sizeof text, c.scene ? "%s%s%g" : "%s", c.name, c.relation, c.bound);
+    json_t *row = json_put(figures_row(table), "limit=%s scene=%s", text, c.scene ? c.scene->words : NULL);
+    snprintf(column, sizeof column, "median %s (95 %%)", e->intensity);
+    figures_put_as(row, column, fit->median, c.low, c.high, "(");
+    if (c.n == 0 || c.hits == 0 || c.hits == c.n)
+        snprintf(text, sizeof text, "%s", c.n == 0 ? "-" : c.hits == 0 ? "never" : "always");
+    else if (isnan(from))
+        snprintf(text, sizeof text, "not rising with intensity");
+    else if (from > 0 && isfinite(to))
+        snprintf(text, sizeof text, "between %g and %g: finer steps", from, to);
+    else if (isfinite(to))
+        snprintf(text, sizeof text, "below %g: begin lower", to);
+    else
+        snprintf(text, sizeof text, "above %g: end higher", from);
+    if (isnan(fit->median))
+        json_object_set_new(row, column, json_string(text));
+    figures_put(row, "beta", fit->beta, NAN, fit->sd_beta);
+    snprintf(text, sizeof text, "%zu of %zu", c.hits, c.n);
+    json_put(row, "exceeded=%s", text);
+    if (!f->hazard)
+        return;
+    figures_number(row, "per_year", c.rate);
+    figures_number(row, "in_50_years_pct", -100 * expm1(-YEARS * c.rate));
+    if (fragility_at(fit, f->hazard[0]) > CUT_OFF_NOTICEABLE)
+        json_put(row, " =%s", "more often: the hazard curve begins too high");
 }
 
 void document_fragilities(Document *d, const Fragilities *f, const Evaluations *e)
 {
-    json_t *list = json_array(), *table = document_table(d);
+    json_t *list = json_array(), *table = document_table(d), *losses = json_array();
+    double own = NAN, alone = NAN;
     if (f->counted)
         add_curve(f, e, NULL, SCENE_IMPACT, table, list);
     for (size_t i = 0; i < f->limits.n; i++)
@@ -279,12 +235,31 @@ void document_fragilities(Document *d, const Fragilities *f, const Evaluations *
             if (evaluated_has(e, e->run, k))
                 add_curve(f, e, &f->limits.limit[i], k, table, list);
     json_put(d->data, "fragility=%p", list);
-    if (!f->hazard || f->counted)
-        return;
-    json_t *losses = annual_losses(f, e);
-    json_array_extend(document_table(d), losses);
-    json_put(d->data, "annual_loss=%p", losses);
-    const double own = json_number_value(json_object_get(json_array_get(losses, SCENE_IMPACT), "annual_loss")),
-                 alone = json_number_value(json_object_get(json_array_get(losses, SCENE_NO_CORE), "annual_loss"));
-    document_say(d, "p", "A year costs %.3g of a new building, %.3g times as much as with no core.", own, own / alone);
+
+    /* The annual loss of every scene: how much of it is not of the levels, and what helps. */
+    for (SceneKind k = 0; k < N_SCENES && f->hazard && !f->counted; k++) {
+        if (!evaluated_has(e, e->run, k))
+            continue;
+        const AnnualLoss y = ida_annual_loss(e, k, f->n_hazard, f->hazard);
+        const double below = y.below / y.per_year, above = y.above / y.per_year;
+        const int is_low = below > OUTSIDE_NOTICEABLE, is_high = above > OUTSIDE_NOTICEABLE;
+        const int is_cut = f->hazard[0] >= e->level[0] && y.at_begin > OUTSIDE_NOTICEABLE * y.per_year;
+        char note[NOTE_MAX];
+        snprintf(note, sizeof note, "%s%s%s",
+                 is_low   ? "begin lower"
+                 : is_cut ? "more: the hazard curve begins too high"
+                          : "",
+                 (is_low || is_cut) && is_high ? ", " : "", is_high ? "end higher" : "");
+        json_array_append_new(losses, json_of("scene=%s annual_loss=%g standard_error=%g share_below_first=%g "
+                                              "share_above_last=%g failed=%zu note=%s",
+                                              SCENES[k].key, y.per_year, y.error, below, above, y.n_failed, note));
+        own = k == SCENE_IMPACT ? y.per_year : own;
+        alone = k == SCENE_NO_CORE ? y.per_year : alone;
+    }
+    if (json_array_size(losses) > 0) {
+        json_array_extend(document_table(d), losses);
+        json_put(d->data, "annual_loss=%p", json_incref(losses));
+        document_say(d, "A year costs %.3g of a new building, %.3g times as much as with no core.", own, own / alone);
+    }
+    json_decref(losses);
 }

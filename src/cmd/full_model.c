@@ -24,39 +24,32 @@ typedef struct {
 
 /* ---- what is shown ----------------------------------------------------------------------------------------------- */
 
-static double relative(double reduced, double full)
-{
-    return full == 0 && reduced == 0 ? 0 : reduced / full - 1;
-}
-
-static json_t *describe(const Job *job, size_t i)
-{
-    const Motion *m = &job->found.motion;
-    const SimResult *reduced = &job->found.result[REDUCED][i], *full = &job->found.result[FULL][i];
-    double error[N_MEASURES];
-    json_t *o = json_object(), *of_reduced = json_object();
-    for (int k = 0; k < N_MEASURES; k++)
-        error[k] = relative(measure_value(reduced, k), measure_value(full, k));
-    put_measures(of_reduced, NULL, "", error, NULL, NULL);
-    if (job->designs.x)
-        json_put(o, "design=%ld", design_number(&job->designs, i));
-    return json_put(o, "record=%s pga_g=%g scale=%g stretch=%g degrees_of_freedom=%p reduced=%p full=%p error=%p",
-                    m->name, motion_peak(m) / GRAVITY, m->scale, m->stretch,
-                    json_of("reduced=%d full=%d", job->found.dofs[REDUCED], job->found.dofs[FULL]),
-                    json_result(NULL, job->kind, reduced), json_result(NULL, job->kind, full), of_reduced);
-}
-
 /* Both models of every design, and how far the reduced one is off. */
 static Status verify_under(const Args *args, Job *job, const Settings *s, Document *d, Err *err)
 {
     char label[DESIGN_LABEL_MAX + 32], name[DESIGN_LABEL_MAX], text[24];
     const FullModel *found = &job->found;
+    const Motion *motion = &found->motion;
     TRY(full_model_find(s, job->kind, job->n, job->designs.x, job->estimates, &job->found, err));
-    document_motion(d, &found->motion, 0);
-    document_say(d, "p", "model (degrees of freedom)");
+    document_motion(d, motion, 0);
+    document_say(d, "model (degrees of freedom)");
     json_t *table = document_table(d);
     for (size_t i = 0; i < job->n; i++) {
-        json_array_append_new(d->data, describe(job, i));
+        const SimResult *reduced = &found->result[REDUCED][i], *full = &found->result[FULL][i];
+        double error[N_MEASURES];
+        json_t *o = json_object(), *of_reduced = json_object();
+        for (int k = 0; k < N_MEASURES; k++) {
+            const double is = measure_value(reduced, k), wanted = measure_value(full, k);
+            error[k] = wanted == 0 && is == 0 ? 0 : is / wanted - 1;
+        }
+        put_measures(of_reduced, NULL, "", error, NULL, NULL);
+        if (job->designs.x)
+            json_put(o, "design=%ld", design_number(&job->designs, i));
+        json_put(o, "record=%s pga_g=%g scale=%g stretch=%g degrees_of_freedom=%p reduced=%p full=%p error=%p",
+                 motion->name, motion_peak(motion) / GRAVITY, motion->scale, motion->stretch,
+                 json_of("reduced=%d full=%d", found->dofs[REDUCED], found->dofs[FULL]),
+                 json_result(NULL, job->kind, reduced), json_result(NULL, job->kind, full), of_reduced);
+        json_array_append_new(d->data, o);
         design_label(&job->designs, args_value(args, "--design"), i, name);
         for (int m = 0; m < MODELS; m++) {
             snprintf(label, sizeof label, "%s, %s (%d)", name, WORDS[m], found->dofs[m]);
@@ -64,32 +57,14 @@ static Status verify_under(const Args *args, Job *job, const Settings *s, Docume
                            found->error ? found->error + i * N_MEASURES : NULL, NULL);
         }
         json_t *row = json_put(figures_row(table), "=%s", "  error of the reduced");
-        for (int o = 0; o < job->order.n_obj; o++) {
-            const int k = job->order.of[o];
-            snprintf(text, sizeof text, "%.3f %%",
-                     100 * relative(measure_value(&found->result[REDUCED][i], k),
-                                    measure_value(&found->result[FULL][i], k)));
+        for (int n = 0; n < job->order.n_obj; n++) {
+            const int k = job->order.of[n];
+            snprintf(text, sizeof text, "%.3f %%", 100 * error[k]);
             json_object_set_new(row, measures_name(&job->order, k), json_string(text));
         }
     }
     full_model_free(&job->found);
     return STATUS_OK;
-}
-
-static Status show(const Args *args, Job *job, Settings *s, Err *err)
-{
-    const char *path;
-    Document d = {.data = json_array()};
-    Status status = args_has(args, "--record") ? STATUS_OK : verify_under(args, job, s, &d, err);
-    for (int i = 0; status == STATUS_OK && (path = args_next(args, "--record", &i));) {
-        status = option_put_path(s->motion.record, path, err);
-        THEN(status, verify_under(args, job, s, &d, err));
-    }
-    d.data = json_only(d.data);
-    if (status == STATUS_OK)
-        return document_give(&d, args, err);
-    document_free(&d);
-    return status;
 }
 
 /* --design; of a run also ID, knee, best_NAME alone. run NULL: there is none. */
@@ -113,9 +88,13 @@ static Status take_designs(const Args *args, const Run *run, Job *job, Settings 
     return STATUS_OK;
 }
 
-static Status check_wishes(const Args *args, Settings *s, const Run *run, Err *err)
+Status show_full_model(const Args *args, Settings *s, const Run *run, Err *err)
 {
-    const char *pga = args_value(args, "--pga");
+    const int as_json = args_has(args, "--json");
+    const char *pga = args_value(args, "--pga"), *path;
+    Job job = {.n = 1, .estimates = s->sim.engine == ENGINE_FAST && !as_json};
+
+    /* 1. What is asked for. */
     TRY(args_alone(args, "--full-model", "--csv --svg --replicates", err));
     if (!frame_is(s->building.model))
         return bad_data(
@@ -123,19 +102,22 @@ static Status check_wishes(const Args *args, Settings *s, const Run *run, Err *e
             s->building.model);
     TRY(pga ? settings_put(s, "motion.pga_g", pga, err) : STATUS_OK);
     TRY(settings_check(s, err));
-    return !run || args_has(args, "--record") ? STATUS_OK : record_paths_check(s, run, err);
-}
-
-Status show_full_model(const Args *args, Settings *s, const Run *run, Err *err)
-{
-    const int as_json = args_has(args, "--json");
-    Job job = {.n = 1, .estimates = s->sim.engine == ENGINE_FAST && !as_json};
-    TRY(check_wishes(args, s, run, err));
+    TRY(!run || args_has(args, "--record") ? STATUS_OK : record_paths_check(s, run, err));
     s->sim.forces = as_json;
     TRY(tower_space(s, &job.space, err));
     TRY(measures_order(&job.order, s->search.objectives, s->search.limits, job.space.n_floors, err));
     TRY(take_designs(args, run, &job, s, err));
-    const Status status = show(args, &job, s, err);
+
+    /* 2. Under the settings' own record, or each that is named. */
+    Document d = {.data = json_array()};
+    Status status = args_has(args, "--record") ? STATUS_OK : verify_under(args, &job, s, &d, err);
+    for (int i = 0; (path = args_next(args, "--record", &i));) {
+        THEN(status, option_put_path(s->motion.record, path, err));
+        THEN(status, verify_under(args, &job, s, &d, err));
+    }
+    d.data = json_only(d.data);
+    THEN(status, document_give(&d, args, err));
+    document_free(&d);
     design_free(&job.designs);
     return status;
 }

@@ -33,17 +33,6 @@ const char *outputs_standard(const Args *args, int i)
     return NULL;
 }
 
-/* The same name in the same folder, there or not, however it was typed. */
-static int is_same_place(const char *one, const char *other)
-{
-    struct stat a, b;
-    char folder[2][PATH_MAX];
-    folder_of(one, folder[0]);
-    folder_of(other, folder[1]);
-    return strcmp(basename(one), basename(other)) == 0 && stat(folder[0], &a) == 0 && stat(folder[1], &b) == 0 &&
-           a.st_dev == b.st_dev && a.st_ino == b.st_ino;
-}
-
 /* Is it that file, or one in that folder, which is no run's and holds more than pictures? */
 static int is_read_from(const char *out, const char *place)
 {
@@ -73,32 +62,26 @@ static void compare(const char *key, const char *path, void *user)
         snprintf(l->reader, sizeof l->reader, "%s names", key);
 }
 
-/* What a run reads when a design of it is simulated again, by the settings in its folder. */
-static int is_read_by_run(const char *out, const char *folder)
-{
-    Settings s;
-    char file[PATH_MAX];
-    Looking l = {.out = out};
-    if (!folder_is_run(folder) || snprintf(file, sizeof file, "%s/settings.ini", folder) >= PATH_MAX)
-        return 0;
-    settings_defaults(&s);
-    if (settings_read(&s, file, NULL, NULL, &(Err){0}) == STATUS_OK)
-        settings_each_path(&s, compare, &l);
-    return l.reader[0] != 0;
-}
-
-static int is_read_at(const char *out, const char *place)
-{
-    return is_read_from(out, place) || is_read_by_run(out, place);
-}
-
-/* word: a file, a folder, a run, or one of its designs: FILE:N, RUN:ID. */
+/* word: a file, a folder, a run, or one of its designs: FILE:N, RUN:ID. A run reads what the settings in its folder
+ * name when a design of it is simulated again. */
 static int is_read(const char *out, const char *word)
 {
-    char place[PATH_MAX];
+    Settings s;
+    char place[PATH_MAX], file[PATH_MAX];
     const char *colon = strrchr(word, ':');
-    snprintf(place, sizeof place, "%.*s", colon ? (int)(colon - word) : 0, word);
-    return is_read_at(out, word) || (colon && is_read_at(out, place));
+    const size_t ends[] = {strlen(word), colon ? (size_t)(colon - word) : 0};
+    Looking l = {.out = out};
+    for (int k = 0; k < (colon ? 2 : 1); k++) {
+        snprintf(place, sizeof place, "%.*s", (int)ends[k], word);
+        if (is_read_from(out, place))
+            return 1;
+        if (!folder_is_run(place) || snprintf(file, sizeof file, "%s/settings.ini", place) >= PATH_MAX)
+            continue;
+        settings_defaults(&s);
+        if (settings_read(&s, file, NULL, NULL, &(Err){0}) == STATUS_OK)
+            settings_each_path(&s, compare, &l);
+    }
+    return l.reader[0] != 0;
 }
 
 static Status refuse(const Given *out, const char *reader, Err *err)
@@ -106,32 +89,31 @@ static Status refuse(const Given *out, const char *reader, Err *err)
     return misused(err, "%s would replace %s, which %s; name another file", out->option->name, out->value, reader);
 }
 
-/* Is there a folder that takes it? The folder of --out may be made by the command. */
-static Status check_place(const Given *out, Err *err)
-{
-    char folder[PATH_MAX];
-    folder_of(out->value, folder);
-    if (strcmp(out->option->name, "--out") != 0 && access(folder, W_OK) != 0)
-        return fail_errno(err, out->value, "cannot be written");
-    return STATUS_OK;
-}
-
 static Status check_one(const Args *args, const Given *out, Err *err)
 {
     int n_readers = 0;
-    struct stat is;
+    struct stat is, there;
+    char folder[PATH_MAX], beside[PATH_MAX];
     if (folder_keeps(out->value))
         return refuse(out, "a run needs", err);
     if (stat(out->value, &is) == 0 && S_ISREG(is.st_mode) && !(is.st_mode & (S_IWUSR | S_IWGRP | S_IWOTH)))
         return refuse(out, "is write-protected", err);
-    TRY(check_place(out, err));
+
+    /* Is there a folder that takes it? That of --out may be made by the command. */
+    folder_of(out->value, folder);
+    if (strcmp(out->option->name, "--out") != 0 && access(folder, W_OK) != 0)
+        return fail_errno(err, out->value, "cannot be written");
     for (int j = 0; j < args->n_operands; j++)
         n_readers += is_read(out->value, args->operands[j]);
     for (int j = 0; j < args->n_given; j++) {
         const Given *other = &args->given[j];
         if (other == out || !other->value)
             continue;
-        if (is_written(other) && is_same_place(other->value, out->value))
+
+        /* The same name in the same folder, there or not, however it was typed. */
+        folder_of(other->value, beside);
+        if (is_written(other) && strcmp(basename(other->value), basename(out->value)) == 0 && stat(folder, &is) == 0 &&
+            stat(beside, &there) == 0 && is.st_dev == there.st_dev && is.st_ino == there.st_ino)
             return misused(err, "%s and %s are one file, %s; name another file", out->option->name, other->option->name,
                            out->value);
         const char *equals = strcmp(other->option->name, "--set") == 0 ? strchr(other->value, '=') : NULL;

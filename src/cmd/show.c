@@ -14,29 +14,26 @@
 
 /* ---- results ----------------------------------------------------------------------------------------------------- */
 
-static json_t *json_damage(const SimResult *r)
-{
-    json_t *o = json_object();
-    for (DamagedPart p = 0; p < N_PARTS; p++) {
-        json_t *list = json_array();
-        for (int j = 0; j < r->n_floors; j++)
-            json_array_append_new(
-                list, json_string(damage_word(
-                          damage_state(p, p == PART_ACCELERATION ? r->peak_acceleration_g[j] : r->drift_ratio[j]))));
-        json_object_set_new(o, DAMAGE_PARTS[p].key, list);
-    }
-    return o;
-}
-
 json_t *json_result(const MeasureOrder *order, SceneKind kind, const SimResult *r)
 {
     json_t *o =
         json_of("scene=%s outcome=%s reason=%s", SCENES[kind].key, outcome_word((Outcome)r->outcome), r->reason);
+    json_t *damage = json_object();
     put_measures(o, order, "", measured(r).value, NULL, NULL);
     json_put(o, "beyond_contact_law=%c peak_filtered_g=%p", beyond_contact_law(r),
              r->filtered_known ? json_numbers(r->n_floors, r->peak_filtered_g) : json_null());
     put_parts(o, kind, r);
-    return json_put(o, "damage=%p", r->outcome == RUN_OK ? json_damage(r) : NULL);
+    for (DamagedPart p = 0; p < N_PARTS && r->outcome == RUN_OK; p++) {
+        const double *by = p == PART_ACCELERATION ? r->peak_acceleration_g : r->drift_ratio;
+        json_t *list = json_array();
+        for (int j = 0; j < r->n_floors; j++)
+            json_array_append_new(list, json_string(damage_word(damage_state(p, by[j]))));
+        json_object_set_new(damage, DAMAGE_PARTS[p].key, list);
+    }
+    if (r->outcome == RUN_OK)
+        json_object_set(o, "damage", damage);
+    json_decref(damage);
+    return o;
 }
 
 json_t *put_device(json_t *o, SceneKind kind, const LinearDevice *device)
@@ -96,11 +93,13 @@ json_t *json_replicates(const MeasureOrder *order, const ReplicateSummary *r)
 
 void put_replicates(json_t *row, const MeasureOrder *order, const ReplicateSummary *r)
 {
+    static const char *const KEYS[] = {"records", "replicates", "rule", "spread"};
     const int known = r && !r->n_failed;
-    json_put(row, "records=%p replicates=%p rule=%p spread=%p",
-             r ? json_integer((json_int_t)r->n_records) : json_null(),
-             r ? json_integer((json_int_t)r->n_replicates) : json_null(), r ? json_string(r->rule) : json_null(),
-             r ? json_string(r->spread) : json_null());
+    for (size_t i = 0; i < N_OF(KEYS) && !r; i++)
+        json_object_set_new(row, KEYS[i], json_null());
+    if (r)
+        json_put(row, "records=%zu replicates=%zu rule=%s spread=%s", r->n_records, r->n_replicates, r->rule,
+                 r->spread);
     put_measures(row, order, "_mean", known ? r->mean : NULL, "_sd", known ? r->sd : NULL);
 }
 
@@ -109,8 +108,8 @@ void document_ida(Document *d, const Evaluations *e, const MeasureOrder *order)
     for (SceneKind c = 0; c < N_SCENES; c++) {
         if (case_has_device(c))
             continue;
-        document_say(d, "p", e->n_read == 1 ? "%s, %zu record" : "%s, %zu records: median (16 %% to 84 %%)",
-                     SCENES[c].words, e->n_read);
+        document_say(d, e->n_read == 1 ? "%s, %zu record" : "%s, %zu records: median (16 %% to 84 %%)", SCENES[c].words,
+                     e->n_read);
         json_t *table = document_table(d);
         for (size_t l = 0; l < e->n_levels; l++) {
             json_t *row = figures_row(table);
@@ -128,7 +127,7 @@ void document_ida(Document *d, const Evaluations *e, const MeasureOrder *order)
 void document_slopes(Document *d, size_t n, const Sensitivity list[])
 {
     static const MeasureId SHOWN[] = {MEASURE_J1, MEASURE_DRIFT_RATIO, MEASURE_J2, MEASURE_CORE_STRESS};
-    document_say(d, "p", "change for one step, with its error from the replicates and from halving the step");
+    document_say(d, "change for one step, with its error from the replicates and from halving the step");
     json_t *table = document_table(d);
     for (size_t i = 0; i < n; i++) {
         const Sensitivity *s = &list[i];
@@ -148,11 +147,11 @@ void document_motion(Document *d, const Motion *m, double duration_s)
     motion_peak_text(m, peak);
     if (duration_s > 0 && duration_s < motion_duration(m))
         snprintf(first, sizeof first, "the first %.4g of ", duration_s);
-    document_say(d, "p", "%s: %s%.4g s, %s", m->name, first, motion_duration(m), peak);
+    document_say(d, "%s: %s%.4g s, %s", m->name, first, motion_duration(m), peak);
     if (m->processed[0])
-        document_say(d, "p", "  %s", m->processed);
+        document_say(d, "  %s", m->processed);
     if (m->warning[0])
-        document_say(d, "p", "  warning: %s", m->warning);
+        document_say(d, "  warning: %s", m->warning);
 }
 
 /* What there is of errors and deviations; NULL: nothing. error: likely ones, behind the sign stands their bound,
@@ -174,7 +173,7 @@ json_t *figures_result(json_t *table, const char *label, const MeasureOrder *ord
     json_t *row = json_put(figures_row(table), "=%s", label);
     put_objectives(row, order, measured(r).value, error, sd, "sd 1 um");
     json_put(row, "impacts=%ld", r->impacts);
-    figures_put(row, "indentation", r->indentation_ratio, NAN, NAN);
+    figures_number(row, "indentation", r->indentation_ratio);
     if (r->outcome != RUN_OK)
         snprintf(note, sizeof note, "%s: %s", outcome_word((Outcome)r->outcome), r->reason);
     else if (beyond_contact_law(r))
@@ -221,8 +220,7 @@ json_t *figures_design(json_t *table, const char *label, long id, const Schema *
     for (size_t k = 0; k < schema->n_obj; k++)
         figures_put(row, schema_objective(schema, k)->name, natural[k], error ? error[k] : NAN, sd ? sd[k] : NAN);
     for (size_t k = 0; k < schema->n_limited; k++)
-        figures_put(row, schema_extra(schema, schema->limited[k])->name, extra ? extra[schema->limited[k]] : NAN, NAN,
-                    NAN);
+        figures_number(row, schema_extra(schema, schema->limited[k])->name, extra ? extra[schema->limited[k]] : NAN);
     return row;
 }
 
@@ -271,22 +269,20 @@ void document_verdict(Document *d, const Run *run, size_t row, const Settings *u
     if (run->settings->problem.kind != PROBLEM_TOWER)
         return;
     char *text = stored_verdict(run, row, used, &why);
-    document_say(d, "h2", "Verdict on design %ld", run->table.row[row].id);
-    document_say(d, "p", "%s", text ? text : why.text);
+    document_add(d, "h2", "Verdict on design %ld", run->table.row[row].id);
+    document_say(d, "%s", text ? text : why.text);
     free(text);
 }
 
 /* ---- warnings ---------------------------------------------------------------------------------------------------- */
 
-void warn_on_stderr(const char *key, const char *text, void *user)
+void warn_on_stderr(const char *key, const char *text, void *)
 {
-    (void)user;
     fprintf(stderr, "warning: %s: %s\n", key, text);
 }
 
-static Status count_source(const char *source, void *counts, Err *err)
+static Status count_source(const char *source, void *counts, Err *)
 {
-    (void)err;
     json_object_set_new(counts, source, json_integer(json_integer_value(json_object_get(counts, source)) + 1));
     return STATUS_OK;
 }

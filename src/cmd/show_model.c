@@ -21,8 +21,7 @@ void document_model(Document *d, const json_t *model)
     const json_t *settings = json_object_get(model, "settings");
     size_t i;
     json_t *e;
-    document_say(d, "p",
-                 "model: %ld simulations of %ld designs under %ld record%s; %.2g times as fast as with all effects",
+    document_say(d, "model: %ld simulations of %ld designs under %ld record%s; %.2g times as fast as with all effects",
                  whole(model, "simulations"), whole(model, "designs"), whole(model, "records"),
                  whole(model, "records") == 1 ? "" : "s", number(model, "speed_factor"));
     json_t *table = document_table(d);
@@ -32,9 +31,9 @@ void document_model(Document *d, const json_t *model)
         const int is_set = strcmp(json_text(e, "is_set"), "yes") == 0, is_on = strcmp(json_text(e, "kept"), "yes") == 0;
         json_t *row = json_put(figures_row(table), "=%s", is_set ? "set" : is_on ? "on" : "off");
         json_put(row, " without=%s", json_text(e, "without"));
-        figures_put(row, "J1 %", is_set ? NAN : number(e, "j1_m_pct"), NAN, NAN);
-        figures_put(row, "drift %", is_set ? NAN : number(e, "drift_ratio_pct"), NAN, NAN);
-        figures_put(row, "J3 %", is_set ? NAN : number(e, "j3_g_pct"), NAN, NAN);
+        figures_number(row, "J1 %", is_set ? NAN : number(e, "j1_m_pct"));
+        figures_number(row, "drift %", is_set ? NAN : number(e, "drift_ratio_pct"));
+        figures_number(row, "J3 %", is_set ? NAN : number(e, "j3_g_pct"));
         json_put(row, "matters in=%s", !is_set && number(e, "in_tolerances") > 1 ? json_text(e, "most_in") : "");
         json_put(row, " value=%s", value);
     }
@@ -55,8 +54,8 @@ static void say_more(Document *d, const json_t *confirmed, const char *folder)
     }
     if (f)
         text_close(f);
-    document_say(d, "p", "model: the knee, a best design or one of their baselines needs more effects. Search again:");
-    document_say(d, "p", "  %s optimize %s --new%s", program_invocation_name, text_shell(folder, text), sets);
+    document_say(d, "model: the knee, a best design or one of their baselines needs more effects. Search again:");
+    document_say(d, "  %s optimize %s --new%s", program_invocation_name, text_shell(folder, text), sets);
     free(sets);
     json_t *table = document_table(d);
     json_array_foreach(json_object_get(confirmed, "designs"), i, one)
@@ -77,12 +76,11 @@ void document_model_confirmed(Document *d, const json_t *model, const char *fold
     if (!confirmed)
         return;
     if (json_array_size(json_object_get(confirmed, "designs")) == 0)
-        document_say(d, "p",
-                     "model: not confirmed: with all effects the simulations of the knee and the best designs fail");
+        document_say(d, "model: not confirmed: with all effects the simulations of the knee and the best designs fail");
     else if (json_object_size(json_object_get(confirmed, "more")) > 0)
         say_more(d, confirmed, folder);
     else
-        document_say(d, "p",
+        document_say(d,
                      "model: enough for the knee and the best of each objective: with all effects J1, drift and J3 are "
                      "within %.2g, %.2g, %.2g %%",
                      number(within, "j1_m_pct"), number(within, "drift_ratio_pct"), number(within, "j3_g_pct"));

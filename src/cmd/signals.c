@@ -15,16 +15,11 @@ static const long long ONE_WISH_NS = 200000000;
 static const int STOP_SIGNALS[] = {SIGINT, SIGTERM, SIGHUP, SIGUSR1};
 enum { N_STOP_SIGNALS = sizeof STOP_SIGNALS / sizeof STOP_SIGNALS[0] };
 
-static long long now_ns(void)
+static void note(int signal_number)
 {
     struct timespec t;
     clock_gettime(CLOCK_MONOTONIC, &t); /* allowed in a handler: signal-safety(7) */
-    return 1000000000LL * t.tv_sec + t.tv_nsec;
-}
-
-static void note(int signal_number)
-{
-    const long long now = now_ns();
+    const long long now = 1000000000LL * t.tv_sec + t.tv_nsec;
     const int before = errno; /* of the call that is interrupted */
     long long first = 0;
     if (atomic_compare_exchange_strong(&first_ns, &first, now))
@@ -48,8 +43,7 @@ void signals_catch(void)
     signal(SIGXFSZ, SIG_IGN);
 }
 
-int signals_asked(void *unused)
+int signals_asked(void *)
 {
-    (void)unused;
     return atomic_load(&asked);
 }

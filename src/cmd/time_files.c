@@ -7,24 +7,8 @@
 #include "sim/floor_record.h"
 #include "store/output.h"
 
-/* Writes what a worker has of design i. */
+/* Writes what a worker has of design i, before the first one the header. */
 typedef Status (*WriteFn)(const TimeJob *job, SimWorker *worker, size_t i, FILE *out, Err *err);
-
-static Status write_all(const TimeJob *job, const char *path, void (*write_header)(FILE *out, int n_floors),
-                        WriteFn write, Err *err)
-{
-    Output o;
-    SimWorker *worker;
-    TRY(output_open(&o, path, err));
-    Status status = sim_worker_create(&worker, job->scene, err);
-    if (status == STATUS_OK) {
-        write_header(o.stream, scene_n_floors(job->scene));
-        for (size_t i = 0; i < job->n && status == STATUS_OK; i++)
-            status = write(job, worker, i, o.stream, err);
-        sim_worker_free(worker);
-    }
-    return output_end(&o, status, err);
-}
 
 static Status run_again(const TimeJob *job, SimWorker *worker, size_t i, Err *err)
 {
@@ -32,18 +16,38 @@ static Status run_again(const TimeJob *job, SimWorker *worker, size_t i, Err *er
     return sim_run(worker, job->tasks[i].kind, job->tasks[i].x, &result, err);
 }
 
-/* -- contacts one by one ------------------------------------------------------------------------------------------- */
+/* The name of each floor's column, by a format. */
+static void print_floors(FILE *out, const char *format, int n_floors)
+{
+    for (int j = 1; j <= n_floors; j++) {
+        char name[32];
+        snprintf(name, sizeof name, format, j);
+        fputs(name, out);
+    }
+}
 
 /* Of designs by number; a run may be repeated with shorter steps: only the last attempt counts. */
 typedef struct {
+    const SimWorker *worker;
     FILE *out;
     long design;
-    int attempt, wanted;
-} ContactRows;
+    int n_floors, attempt, wanted;
+} Rows;
+
+static Rows rows_of(const TimeJob *job, const SimWorker *worker, size_t i, FILE *out)
+{
+    return (Rows){.worker = worker,
+                  .out = out,
+                  .design = design_number(job->designs, i),
+                  .n_floors = scene_n_floors(job->scene),
+                  .wanted = job->results[i].repeated + 1};
+}
+
+/* -- contacts one by one ------------------------------------------------------------------------------------------- */
 
 static void add_contact(const SimContact *c, void *user)
 {
-    ContactRows *r = user;
+    Rows *r = user;
     r->attempt += !c; /* a run begins */
     if (!c || r->attempt != r->wanted)
         return;
@@ -54,75 +58,45 @@ static void add_contact(const SimContact *c, void *user)
     fputc('\n', r->out);
 }
 
-static void write_contacts_header(FILE *out, int n_floors)
+static Status write_contacts(const TimeJob *job, SimWorker *worker, size_t i, FILE *out, Err *err)
 {
-    (void)n_floors;
-    fprintf(out,
-            "design,floor,side,open,t_s,duration_s,approach_m_s,rebound_m_s,force_n,indentation_m,impulse_ns,lost_j\n");
-}
-
-static Status write_contacts_of(const TimeJob *job, SimWorker *worker, size_t i, FILE *out, Err *err)
-{
-    ContactRows rows = {.out = out, .design = design_number(job->designs, i), .wanted = job->results[i].repeated + 1};
+    Rows rows = rows_of(job, worker, i, out);
+    if (i == 0)
+        fputs("design,floor,side,open,t_s,duration_s,approach_m_s,rebound_m_s,force_n,indentation_m,impulse_ns,"
+              "lost_j\n",
+              out);
     sim_worker_contacts(worker, add_contact, &rows);
     return run_again(job, worker, i, err);
 }
 
-Status write_contacts(const TimeJob *job, const char *path, Err *err)
-{
-    return write_all(job, path, write_contacts_header, write_contacts_of, err);
-}
-
 /* -- histories ----------------------------------------------------------------------------------------------------- */
 
-typedef struct {
-    const SimWorker *worker;
-    FILE *out;
-    long design;
-    int n_floors, attempt, wanted;
-} HistoryRows;
-
-static void write_history_header(FILE *out, int n_floors)
+static void add_sample(const SimSample *s, void *user)
 {
-    static const char *const OF_FLOOR[] = {"floor_%02d_m", "floor_%02d_m_s", "drift_%02d_m",  "accel_%02d_g",
-                                           "core_%02d_m",  "core_%02d_m_s",  "contact_%02d_n"};
-    fputs("design,t_s,ground_g", out);
-    for (size_t k = 0; k < N_OF(OF_FLOOR); k++)
-        for (int j = 1; j <= n_floors; j++) {
-            char name[32];
-            snprintf(name, sizeof name, OF_FLOOR[k], j);
-            fprintf(out, ",%s", name);
-        }
-    fputs(",kinetic_j,strain_j,damped_building_j,core_j,damped_core_j,contacts_j,input_j\n", out);
-}
-
-static void write_history_row(const SimSample *s, void *user)
-{
-    HistoryRows *rows = user;
+    Rows *r = user;
     double row[SAMPLE_FIXED + SAMPLE_PARTS * FLOORS_MAX];
-    rows->attempt += s->t == 0;
-    if (rows->attempt != rows->wanted)
+    r->attempt += s->t == 0;
+    if (r->attempt != r->wanted)
         return;
-    sample_row(rows->worker, s, (size_t)rows->n_floors, row);
-    fprintf(rows->out, "%ld", rows->design);
-    print_cells(rows->out, SAMPLE_FIXED + SAMPLE_PARTS * (size_t)rows->n_floors, row);
-    fputc('\n', rows->out);
+    sample_row(r->worker, s, (size_t)r->n_floors, row);
+    fprintf(r->out, "%ld", r->design);
+    print_cells(r->out, SAMPLE_FIXED + SAMPLE_PARTS * (size_t)r->n_floors, row);
+    fputc('\n', r->out);
 }
 
-static Status write_history_of(const TimeJob *job, SimWorker *worker, size_t i, FILE *out, Err *err)
+static Status write_history(const TimeJob *job, SimWorker *worker, size_t i, FILE *out, Err *err)
 {
-    HistoryRows rows = {.worker = worker,
-                        .out = out,
-                        .design = design_number(job->designs, i),
-                        .n_floors = scene_n_floors(job->scene),
-                        .wanted = job->results[i].repeated + 1};
-    sim_worker_sample(worker, job->every_s, write_history_row, &rows);
+    static const char *const OF_FLOOR[] = {",floor_%02d_m", ",floor_%02d_m_s", ",drift_%02d_m",  ",accel_%02d_g",
+                                           ",core_%02d_m",  ",core_%02d_m_s",  ",contact_%02d_n"};
+    Rows rows = rows_of(job, worker, i, out);
+    if (i == 0) {
+        fputs("design,t_s,ground_g", out);
+        for (size_t k = 0; k < N_OF(OF_FLOOR); k++)
+            print_floors(out, OF_FLOOR[k], rows.n_floors);
+        fputs(",kinetic_j,strain_j,damped_building_j,core_j,damped_core_j,contacts_j,input_j\n", out);
+    }
+    sim_worker_sample(worker, job->every_s, add_sample, &rows);
     return run_again(job, worker, i, err);
-}
-
-Status write_histories(const TimeJob *job, const char *path, Err *err)
-{
-    return write_all(job, path, write_history_header, write_history_of, err);
 }
 
 /* -- floor spectra ------------------------------------------------------------------------------------------------- */
@@ -145,66 +119,64 @@ static void take_floors(const SimSample *s, void *user)
         sim_worker_floors(floors->worker, s, u);
 }
 
-static void write_spectra_header(FILE *out, int n_floors)
-{
-    fputs("design,period_s,ground_psa_g", out);
-    for (int j = 1; j <= n_floors; j++)
-        fprintf(out, ",floor_%02d_psa_g", j);
-    fputc('\n', out);
-}
-
-/* psa (n_floors + 1, N_PERIODS) of the ground and of the floors, from rows of accelerations. */
-static Status find_spectra(const TimeJob *job, FloorRecord *record, const double T[], double psa[], Err *err)
+/* Of the ground, then of every floor, from the accelerations that were taken. */
+static Status print_spectra(const TimeJob *job, FloorRecord *record, long design, FILE *out, Err *err)
 {
     const double *rows;
-    size_t n, width;
+    size_t n, width, n_floors = (size_t)scene_n_floors(job->scene);
+    double T[N_PERIODS], psa[FLOORS_MAX + 1][N_PERIODS];
     TRY(floor_record_accelerations(record, &rows, &n, &width, err));
     Motion floor = {.n = n, .dt_s = floor_record_step(record), .accel = malloc((n + 1) * sizeof *floor.accel)};
     if (!floor.accel)
         return fail(err, STATUS_NO_MEMORY, "--floor-spectra: no memory for %zu samples", n);
-    spectrum_psa(job->motion, DAMPING, N_PERIODS, T, psa);
-    for (size_t j = 0; j < (size_t)scene_n_floors(job->scene); j++) {
+    for (int k = 0; k < N_PERIODS; k++)
+        T[k] = SHORTEST_S * pow(LONGEST_S / SHORTEST_S, (double)k / (N_PERIODS - 1));
+    spectrum_psa(job->motion, DAMPING, N_PERIODS, T, psa[0]);
+    for (size_t j = 0; j < n_floors; j++) {
         for (size_t i = 0; i < n; i++)
             floor.accel[i] = rows[i * width + j];
-        spectrum_psa(&floor, DAMPING, N_PERIODS, T, psa + (j + 1) * N_PERIODS);
+        spectrum_psa(&floor, DAMPING, N_PERIODS, T, psa[j + 1]);
     }
     free(floor.accel);
-    return STATUS_OK;
-}
-
-static void print_spectra(FILE *out, long design, int n_floors, const double T[], const double psa[])
-{
     for (size_t i = 0; i < N_PERIODS; i++) {
         fprintf(out, "%ld", design);
         print_cells(out, 1, &T[i]);
-        for (size_t j = 0; j <= (size_t)n_floors; j++)
-            print_cells(out, 1, &(double){psa[j * N_PERIODS + i] / GRAVITY});
+        for (size_t j = 0; j <= n_floors; j++)
+            print_cells(out, 1, &(double){psa[j][i] / GRAVITY});
         fputc('\n', out);
     }
-}
-
-static Status spectra_of(const TimeJob *job, FloorSamples *floors, SimWorker *worker, size_t i, FILE *out, Err *err)
-{
-    double T[N_PERIODS], psa[(FLOORS_MAX + 1) * N_PERIODS];
-    for (int k = 0; k < N_PERIODS; k++)
-        T[k] = SHORTEST_S * pow(LONGEST_S / SHORTEST_S, (double)k / (N_PERIODS - 1));
-    sim_worker_sample(worker, SAMPLES_S, take_floors, floors);
-    TRY(run_again(job, worker, i, err));
-    TRY(find_spectra(job, floors->record, T, psa, err));
-    print_spectra(out, design_number(job->designs, i), scene_n_floors(job->scene), T, psa);
     return STATUS_OK;
 }
 
-static Status write_spectra_of(const TimeJob *job, SimWorker *worker, size_t i, FILE *out, Err *err)
+static Status write_spectra(const TimeJob *job, SimWorker *worker, size_t i, FILE *out, Err *err)
 {
     FloorSamples floors = {.worker = worker};
+    if (i == 0) {
+        fputs("design,period_s,ground_psa_g", out);
+        print_floors(out, ",floor_%02d_psa_g", scene_n_floors(job->scene));
+        fputc('\n', out);
+    }
     TRY(floor_record_create(&floors.record, scene_n_floors(job->scene), err));
-    const Status status = spectra_of(job, &floors, worker, i, out, err);
+    sim_worker_sample(worker, SAMPLES_S, take_floors, &floors);
+    Status status = run_again(job, worker, i, err);
+    THEN(status, print_spectra(job, floors.record, design_number(job->designs, i), out, err));
     floor_record_free(floors.record);
     return status;
 }
 
-Status write_floor_spectra(const TimeJob *job, const char *path, Err *err)
+/* ------------------------------------------------------------------------------------------------------------------ */
+
+Status time_file_write(const TimeJob *job, TimeFile which, const char *path, Err *err)
 {
-    return write_all(job, path, write_spectra_header, write_spectra_of, err);
+    static const WriteFn WRITE[] = {write_contacts, write_history, write_spectra};
+    Output o;
+    SimWorker *worker;
+    TRY(output_open(&o, path, err));
+    Status status = sim_worker_create(&worker, job->scene, err);
+    if (status == STATUS_OK) {
+        for (size_t i = 0; i < job->n && status == STATUS_OK; i++)
+            status = WRITE[which](job, worker, i, o.stream, err);
+        sim_worker_free(worker);
+    }
+    return output_end(&o, status, err);
 }

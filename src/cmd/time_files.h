@@ -20,6 +20,5 @@ typedef struct {
     double every_s;           /* --history: [s] at most from row to row; 0: the motion's samples */
 } TimeJob;
 
-Status write_histories(const TimeJob *job, const char *path, Err *err);
-Status write_contacts(const TimeJob *job, const char *path, Err *err);
-Status write_floor_spectra(const TimeJob *job, const char *path, Err *err);
+typedef enum { TIME_CONTACTS, TIME_HISTORY, TIME_SPECTRA, N_TIME_FILES } TimeFile;
+Status time_file_write(const TimeJob *job, TimeFile which, const char *path, Err *err);

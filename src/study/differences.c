@@ -7,27 +7,23 @@
 
 typedef struct {
     FILE *lines;
-    size_t n_limits, n_lowered, n_others; /* n_lowered: of the limits */
-    char first[sizeof((Err *)0)->text];   /* of the others, else of the limits */
+    size_t n_limits, n_others;
+    char first[sizeof((Err *)0)->text]; /* of the others */
 } Differences;
 
 enum { SHOWN = 120 }; /* bytes of a long value in the message; the lines have all of it */
 
-/* Counts and writes down a setting that differs. A limit of 0, or a word, is none; that of hours is of one session, and
- * takes nothing from a run. */
+/* Counts and writes down a setting that differs. */
 static void compare_one(const char *key, unsigned flags, const char *was, const char *is, void *user)
 {
     Differences *d = user;
     const int is_limit = (flags & SETTING_LIMIT) != 0;
-    const double now = strtod(is, NULL), before = strtod(was, NULL);
     if (flags & SETTING_FREE)
         return;
-    if (d->n_others == 0 && (!is_limit || d->n_limits == 0))
+    if (!is_limit && d->n_others++ == 0)
         snprintf(d->first, sizeof d->first, "%s is %.*s%s there, now %.*s%s", key, visible_cut(was, SHOWN), was,
                  strlen(was) > SHOWN ? "..." : "", visible_cut(is, SHOWN), is, strlen(is) > SHOWN ? "..." : "");
     d->n_limits += is_limit;
-    d->n_lowered += is_limit && strcmp(key, "search.max_hours") != 0 && now > 0.0 && (now < before || !(before > 0.0));
-    d->n_others += !is_limit;
     if (d->lines)
         fprintf(d->lines, "%s: %s in the run, now %s%s\n", key, was, is, is_limit ? " (a limit)" : "");
 }
@@ -68,11 +64,10 @@ Status differences_check(const Comparison *c, size_t n_there, int *has_new_limit
                 "note: linear algebra by the kernels %s in the run, now %s: rounded differently, the search goes on "
                 "otherwise than it would there\n",
                 kernels, linalg_kernel_name());
-    if (d.n_others > 0 || (!c->force && d.n_lowered > 0))
-        return bad_data(err, "%s: holds a run with other settings: %s%s; %s", c->run->folder, d.first,
-                        d.n_limits + d.n_others > 1 ? ", and more" : "",
-                        d.n_others == 0 ? "--force-settings lowers limits"
-                                        : "put that back, or choose another --out, or --new");
+    if (d.n_others > 0)
+        return bad_data(err,
+                        "%s: holds a run with other settings: %s%s; put that back, or choose another --out, or --new",
+                        c->run->folder, d.first, d.n_limits + d.n_others > 1 ? ", and more" : "");
 
     /* 3. A limit below what is there already would leave a run that is neither finished nor can be resumed. */
     const long most = c->used->search.max_evals;

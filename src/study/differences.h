@@ -1,8 +1,8 @@
 /* study/differences.h -- whether a run may be resumed with these settings.
  *
  * Settings must be those of the run, and the files that they name must have the content that its provenance has. A free
- * setting (SETTING_FREE) is not compared; limits (SETTING_LIMIT) may be raised, and lowered where that is asked for
- * (`force`), but search.max_evals not to less than the run holds.
+ * setting (SETTING_FREE) is not compared; limits (SETTING_LIMIT) may be others, but search.max_evals not less than the
+ * run holds.
  *
  * Errors  STATUS_BAD_DATA: the differences as far as they fit, all of them in `lines` (NULL: not wanted), a line each
  *         */
@@ -15,7 +15,6 @@ typedef struct {
     const Run *run;
     const Settings *used;
     const Adapter *adapter; /* of the settings */
-    int force;
     FILE *lines;
 } Comparison;
 

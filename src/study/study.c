@@ -2,11 +2,13 @@
 
 #include <pthread.h>
 #include <signal.h>
+#include <stdatomic.h>
 
 #include <omp.h>
 
 #include "api/search_config.h"
 #include "base/clock.h"
+#include "base/hypervolume.h"
 #include "base/json.h"
 #include "evaluate/cluster.h"
 #include "settings/settings.h"
@@ -20,7 +22,6 @@
 #include "study/named.h"
 #include "study/record_race.h"
 #include "study/search_loop.h"
-#include "study/study_log.h"
 #include "study/study_model.h"
 
 typedef struct {
@@ -41,9 +42,9 @@ typedef struct {
     size_t generation;         /* that is under way */
     size_t first_generation;   /* of this session */
     double next_shown;         /* [s] of the clock, of the progress within it */
-    int asked, late;           /* why it stopped: the signal, the time */
+    atomic_int asked, late;    /* why it stopped: the signal, the time */
     long failures[2];          /* in a row up to now: of whole evaluations, of those of the cheap level alone */
-    int failing;               /* search.failures_max of them; 2: of the cheap level */
+    atomic_int failing;        /* search.failures_max of them; 2: of the cheap level */
     char failure[200];         /* why the last one failed */
     char lost[200];            /* what ended the session beside a request: a rank that died, say */
     pthread_mutex_t lock;      /* results come while a generation is written */
@@ -64,22 +65,11 @@ static int may_go_on(void *user)
     Study *study = user;
     const StudyOptions *o = study->options;
     const int asked = o->stop ? o->stop(o->user) : 0;
-    if (asked) {
-#pragma omp atomic write
+    if (asked)
         study->asked = asked;
-        return 0;
-    }
-    int failing;
-#pragma omp atomic read
-    failing = study->failing;
-    if (failing)
-        return 0;
-    if (session_seconds(study) >= study->max_s) {
-#pragma omp atomic write
+    else if (!study->failing && session_seconds(study) >= study->max_s)
         study->late = 1;
-        return 0;
-    }
-    return 1;
+    return !asked && !study->failing && !study->late;
 }
 
 /* After `now` evaluations; view NULL: within the first generation of the session. */
@@ -109,10 +99,8 @@ static Status evaluation_done(const Evaluation *e, void *user, Err *err)
     *in_a_row = has_failed ? *in_a_row + 1 : 0;
     if (has_failed && !study->failing) {
         snprintf(study->failure, sizeof study->failure, "%s: %s", outcome_word(e->outcome), e->reason);
-        if (most > 0 && *in_a_row >= most) {
-#pragma omp atomic write
+        if (most > 0 && *in_a_row >= most)
             study->failing = 1 + is_cheap;
-        }
     }
     study->summary->n_simulated++;
     study->summary->n_failed += has_failed;
@@ -133,7 +121,7 @@ static Status evaluation_done(const Evaluation *e, void *user, Err *err)
     return status;
 }
 
-/* Stores the end of a generation; 1: the search is to stop. */
+/* Stores the end of a generation, in log.jsonl with what it cost; 1: the search is to stop. */
 static int observe(const SearchView *view, const SearchTime *t, void *user)
 {
     Study *study = user;
@@ -142,8 +130,17 @@ static int observe(const SearchView *view, const SearchTime *t, void *user)
     const double session = session_seconds(study);
     const SessionTimes times = {study->seconds_before + session, session, t->all, t->waiting, t->choosing};
     study->status = store_generation(study->store, view, &times, study->err);
-    if (study->status == STATUS_OK)
-        study->status = study_log_generation(study->store, view, &times, study->err);
+    const Archive *a = view->all;
+    const double hypervolume = store_hypervolume(study->store);
+    THEN(study->status,
+         store_event(study->store,
+                     json_of("event=%s number=%ld simulated=%ld repeats=%ld failed=%ld front=%ld outputs_left_out=%ld "
+                             "surrogate_error=%g hypervolume=%g hypervolume_error=%g seconds=%g search_s=%g "
+                             "waited_s=%g surrogate_s=%g",
+                             "generation", view->generation, a->n, a->n_replicates, a->n_failed, a->n_front,
+                             view->n_left_out, view->surrogate_error, hypervolume, hypervolume_error(hypervolume),
+                             times.run, times.search, times.waiting, times.choosing),
+                     study->err));
     study->generation = view->generation + 1;
     pthread_mutex_unlock(&study->lock);
     sum->n_front = view->all->n_front;
@@ -201,11 +198,8 @@ static Status take_first(const Evaluation *e, void *user, Err *err)
     return evaluation_table_append(&((Study *)user)->first, e, err);
 }
 
-static int end_first(const SearchView *view, const SearchTime *time, void *user)
+static int end_first(const SearchView *, const SearchTime *, void *)
 {
-    (void)view;
-    (void)time;
-    (void)user;
     return 1;
 }
 
@@ -283,25 +277,6 @@ static int came_to_its_end(const Run *run, StopReason *stopped)
     return 1;
 }
 
-/* Before anything is written: a search of another version stays as it is. */
-static Status check_state(const Study *study, const Run *run, Err *err)
-{
-    StopReason unused;
-    const int goes_on = study->has_new_limits || !came_to_its_end(run, &unused);
-    if (goes_on && run->state_is_damaged)
-        return fail(err, STATUS_IO,
-                    "%s: the state of the search is damaged; its evaluations are whole. Begin anew from its front: "
-                    "--new --set search.start=%s",
-                    study->summary->folder, study->summary->folder);
-    return !goes_on || !run->state || search_state_is_current(run->state, run->n_state)
-               ? STATUS_OK
-               : bad_data(err,
-                          "%s: another version of the program interrupted this search, and this one cannot resume it; "
-                          "nothing was changed. Resume it with that version, or begin anew from its front: "
-                          "--new --set search.start=%s",
-                          study->summary->folder, study->summary->folder);
-}
-
 static Status resume(Study *study, Err *err)
 {
     const Run *run = store_run(study->store);
@@ -318,13 +293,24 @@ static Status resume(Study *study, Err *err)
         study->evaluations_before = run_evaluations(&all, 0);
         run_free(&all);
     }
-    TRY(differences_check(&(Comparison){.run = run,
-                                        .used = &study->used,
-                                        .adapter = study->adapter,
-                                        .force = study->options->force,
-                                        .lines = study->differences},
-                          study->evaluations_before, &study->has_new_limits, err));
-    TRY(check_state(study, run, err));
+    TRY(differences_check(
+        &(Comparison){.run = run, .used = &study->used, .adapter = study->adapter, .lines = study->differences},
+        study->evaluations_before, &study->has_new_limits, err));
+
+    /* Before anything is written: a search of another version stays as it is. */
+    StopReason unused;
+    const int goes_on = study->has_new_limits || !came_to_its_end(run, &unused);
+    if (goes_on && run->state_is_damaged)
+        return fail(err, STATUS_IO,
+                    "%s: the state of the search is damaged; its evaluations are whole. Begin anew from its front: "
+                    "--new --set search.start=%s",
+                    sum->folder, sum->folder);
+    if (goes_on && run->state && !search_state_is_current(run->state, run->n_state))
+        return bad_data(err,
+                        "%s: another version of the program interrupted this search, and this one cannot resume it; "
+                        "nothing was changed. Resume it with that version, or begin anew from its front: "
+                        "--new --set search.start=%s",
+                        sum->folder, sum->folder);
     study->used.problem.constraints = run->settings->problem.constraints;
     TRY(adapter_constrain(study->adapter, run->settings->problem.constraints, err));
     study->seconds_before = sum->seconds;
@@ -342,31 +328,30 @@ static Status open_store(Study *study, Err *err)
     return store_forget_empty(study->store, err);
 }
 
-/* A new run chooses its model, where that is open, before there is a folder for it; one that is there has chosen. */
-static Status find_model(Study *study, Err *err)
-{
-    const int is_there = study->store || (!study->options->fresh && run_is_there(study->used.run.out));
-    if (study->used.sim.model == MODEL_AUTO && is_there)
-        TRY(open_store(study, err));
-    const Status status = study_model(&study->used, study->store ? store_run(study->store) : NULL,
-                                      &(Observer){.go_on = may_go_on, .user = study}, &study->model, err);
-    if (status == STATUS_STOPPED)
-        return fail(err, status, "%s: stopped before its model was chosen; nothing is stored", study->used.run.out);
-    TRY(status);
-    if (study->model && study->options->model)
-        study->options->model(study->model, study->options->user);
-    return STATUS_OK;
-}
-
 /* Opens problem and run, which begins or is resumed. */
 static Status prepare(Study *study, const Settings *s, Err *err)
 {
     const double hours = s->search.max_hours;
+    const StudyOptions *o = study->options;
     char *folder = study->summary->folder;
     study->used = *s;
     study->max_s = hours > 0.0 ? 3600.0 * hours : INFINITY;
     TRY(hours == OPTION_WORD ? job_seconds(&study->max_s, err) : STATUS_OK);
-    TRY(find_model(study, err));
+
+    /* 1. A new run chooses its model, where that is open, before there is a folder for it; one that is there has
+     * chosen. */
+    const int is_there = study->store || (!o->fresh && run_is_there(s->run.out));
+    if (s->sim.model == MODEL_AUTO && is_there)
+        TRY(open_store(study, err));
+    const Status status = study_model(&study->used, study->store ? store_run(study->store) : NULL,
+                                      &(Observer){.go_on = may_go_on, .user = study}, &study->model, err);
+    if (status == STATUS_STOPPED)
+        return fail(err, status, "%s: stopped before its model was chosen; nothing is stored", s->run.out);
+    TRY(status);
+    if (study->model && o->model)
+        o->model(study->model, o->user);
+
+    /* 2. The problem, then the run. */
     Settings open = study->used;
     open.problem.constraints = -1;
     TRY(adapter_open(&study->adapter, &open, err));
@@ -431,7 +416,10 @@ static Status finish(Study *study, Err *err)
                           ? "stopped by SIGTERM (mpirun: a rank has died, or it was asked to end)"
                           : stop_reason_words(sum->stopped);
     sum->seconds = study->seconds_before + session;
-    TRY(study_log_end(study->store, sum, is_final, err));
+    TRY(store_event(study->store,
+                    json_of("event=%s why=%s final=%c simulated=%zu failed=%zu seconds=%g", "stops",
+                            stop_reason_words(sum->stopped), is_final, sum->n_simulated, sum->n_failed, sum->seconds),
+                    err));
     RunStore *store = study->store;
     study->store = NULL;
     TRY(store_close(store, why, is_final, session, is_final ? study->options->run : NULL, err));
@@ -467,68 +455,45 @@ int study_finished(RunStore *store, StudySummary *summary, Run *run)
 
 /* -- all of it ----------------------------------------------------------------------------------------------------- */
 
-/* Of a search that is cut short, where it takes a moment: who asked for the end does not wait for more. */
-static Status know_named_so_far(Study *study, Err *err)
-{
-    static const double SIMULATIONS = 150.0, MOMENT_S = 5.0; /* some ten for each of fifteen designs */
-    const StudySummary *sum = study->summary;
-    const double each = sum->busy_s / (double)(sum->n_simulated - sum->n_before);
-    size_t n_ranks;
-    if (study->failing || cluster_executor(&n_ranks) ||
-        !(each * SIMULATIONS <= MOMENT_S * adapter_threads(study->adapter)))
-        return STATUS_OK;
-    return named_simulate(study->store, &study->used, adapter_problem(study->adapter), NULL, NULL, err);
-}
-
-/* What the knee is compared with, and what the front says about its gaps. */
-static Status find_baselines(Study *study, Err *err)
-{
-    const Run *run = study->options->run;
-    if (!run || run->n_front == 0 || !adapter_tower(study->adapter))
-        return STATUS_OK;
-    study->summary->has_baselines = 1;
-    TRY(front_review_closings(adapter_problem(study->adapter), run, &study->summary->review, err));
-    return baselines_find(adapter_problem(study->adapter), run_x(run, run_knee(run)), 1, study->summary->baseline, err);
-}
-
 /* The search, then the designs of its front polished and those named known. */
 static Status work(Study *study, Err *err)
 {
+    static const double SIMULATIONS = 150.0, MOMENT_S = 5.0; /* some ten for each of fifteen designs */
     const StudyOptions *o = study->options;
+    const Problem *p = adapter_problem(study->adapter);
     const Tower *t = adapter_tower(study->adapter);
     StudySummary *sum = study->summary;
+    size_t n_ranks;
+    char program[96];
     if (store_run(study->store)) /* else it has been told before the first designs were asked */
         tell_start(study);
     for (size_t i = 0; o->record && t && i < tower_n_records(t); i++)
         o->record(tower_record(t, i), o->user);
-    TRY(study_log_start(study->store, adapter_threads(study->adapter), &study->used.search, sum->n_before, err));
+    const int threads = adapter_threads(study->adapter);
+    snprintf(program, sizeof program, "imtet %s (%s)", program_version(), program_revision());
+    TRY(store_session(study->store, program, threads, sum->n_before, err));
+    TRY(store_event(study->store,
+                    json_of("event=%s program=%s threads=%d simulated=%zu max_evals=%ld",
+                            sum->n_before ? "resumes" : "starts", program, threads, sum->n_before,
+                            study->used.search.max_evals),
+                    err));
     TRY(run_search(study, err));
     TRY(study->status);
-    if (sum->stopped == STOP_ASKED) {
-        TRY(know_named_so_far(study, err));
-    } else {
-        const FinalPolish p = {
-            .used = &study->used, .n_simulated = sum->n_simulated, .go_on = may_go_on, .user = study};
-        TRY(note_stop(study, final_polish(study->store, &p, &sum->polish, err), err));
+    if (sum->stopped == STOP_ASKED) { /* who asked for the end waits for the named ones a moment, and no longer */
+        const double each = sum->busy_s / (double)(sum->n_simulated - sum->n_before);
+        if (!study->failing && !cluster_executor(&n_ranks) && each * SIMULATIONS <= MOMENT_S * threads)
+            TRY(named_simulate(study->store, &study->used, p, NULL, NULL, err));
+        return finish(study, err);
     }
+    const FinalPolish polish = {
+        .used = &study->used, .n_simulated = sum->n_simulated, .go_on = may_go_on, .user = study};
+    TRY(note_stop(study, final_polish(study->store, &polish, &sum->polish, err), err));
     if (sum->stopped != STOP_ASKED)
-        TRY(note_stop(
-            study, named_simulate(study->store, &study->used, adapter_problem(study->adapter), may_go_on, study, err),
-            err));
+        TRY(note_stop(study, named_simulate(study->store, &study->used, p, may_go_on, study, err), err));
     if (sum->stopped != STOP_ASKED)
         TRY(note_stop(study, study_model_confirm(study->store, &(Observer){.go_on = may_go_on, .user = study}, err),
                       err));
     return finish(study, err);
-}
-
-/* The run that there is nothing more to do on; its front.csv may have been removed. */
-static Status take_finished(const Study *study, Err *err)
-{
-    Run unwanted, *run = study->options->run ? study->options->run : &unwanted;
-    TRY(store_write_front(study->store, run, err));
-    if (run == &unwanted)
-        run_free(run);
-    return STATUS_OK;
 }
 
 Status study_run(const Settings *s, const StudyOptions *options, StudySummary *summary, FILE *differences, Err *err)
@@ -538,13 +503,22 @@ Status study_run(const Settings *s, const StudyOptions *options, StudySummary *s
         .options = options, .store = options->store, .summary = summary, .differences = differences, .err = err};
     pthread_mutex_init(&study.lock, NULL);
     study.start = clock_seconds();
+    Run unwanted = {0}, *finished = options->run ? options->run : &unwanted;
     Status status = prepare(&study, s, err);
-    if (status == STATUS_OK) { /* a run may have reached one of its limits before */
+    if (status == STATUS_OK) { /* of a run that has reached its limits before front.csv may have been removed */
         const Run *run = store_run(study.store);
         const int is_over = run && !study.has_new_limits && came_to_its_end(run, &summary->stopped);
-        status = is_over ? take_finished(&study, err) : work(&study, err);
+        status = is_over ? store_write_front(study.store, finished, err) : work(&study, err);
     }
-    THEN(status, find_baselines(&study, err));
+
+    /* What the knee is compared with, and what the front says about its gaps. */
+    if (status == STATUS_OK && options->run && finished->n_front > 0 && adapter_tower(study.adapter)) {
+        const Problem *p = adapter_problem(study.adapter);
+        summary->has_baselines = 1;
+        status = front_review_closings(p, finished, &summary->review, err);
+        THEN(status, baselines_find(p, run_x(finished, run_knee(finished)), 1, summary->baseline, err));
+    }
+    run_free(&unwanted);
     if (status != STATUS_OK && study.store) {
         Err ignored; /* the fault itself is what is returned */
         store_flush(study.store, &ignored);

@@ -41,7 +41,6 @@ typedef struct {
 typedef struct {
     RunStore *store;         /* the run to be resumed, passes over to the study; NULL: run.out is opened */
     int fresh;               /* never resume a run: a number is added to run.out where it holds one */
-    int force;               /* changed limits are taken over */
     int (*stop)(void *user); /* a signal's number, 0: goes on; asked from any thread, often; NULL: never */
     /* n_busy: of n_workers so many may have something to simulate at once */
     void (*started)(const char *folder, size_t n_simulated, size_t n_workers, size_t n_busy, void *user);

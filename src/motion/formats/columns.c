@@ -561,7 +561,7 @@ static Status fail_unnamed(const Plain *t, const Lines *first, Err *err)
                        "motion.dt_s=0.01)",
                        t->width);
     return fail_at(err, first,
-                   "has %zu rows of %zu columns without names: choose one by motion.channel (--channel 1 to %zu); "
+                   "has %zu rows of %zu columns without names: choose one by motion.channel (1 to %zu); "
                    "if they are one motion written row by row, --text per_line=%zu%s",
                    t->n_rows, t->width, t->width, t->width,
                    t->width == 2 && !t->l->point_line
