@@ -4,19 +4,6 @@
 #include "cmd/show.h"
 #include "settings/options.h"
 
-/* Values that the first design which succeeded has, as many as are known from the front: constraint values. */
-static long count_constraints(const EvaluationTable *t)
-{
-    long n = 0;
-    for (size_t i = 0; i < t->n; i++)
-        if (t->row[i].outcome == OUTCOME_OK) {
-            while (n < (long)t->n_extra && isfinite(t->row[i].extra[n]))
-                n++;
-            break;
-        }
-    return n;
-}
-
 /* Rows of out have the designs X (n, n_var), as the workers answer them; the columns of the adapter follow. */
 static Status ask(Adapter *a, size_t n, const double X[], EvaluationTable *out, Err *err)
 {
@@ -35,7 +22,15 @@ static Status ask(Adapter *a, size_t n, const double X[], EvaluationTable *out, 
         THEN(status, evaluation_table_append(out, done.evaluation, err));
     }
     queue_close(q);
-    return status == STATUS_OK ? adapter_constrain(a, count_constraints(out), err) : status;
+
+    /* Values that the first design which succeeded has, as many as are known from the front: constraint values. */
+    size_t first = 0;
+    long n_known = 0;
+    while (first < out->n && out->row[first].outcome != OUTCOME_OK)
+        first++;
+    while (first < out->n && n_known < (long)out->n_extra && isfinite(out->row[first].extra[n_known]))
+        n_known++;
+    return status == STATUS_OK ? adapter_constrain(a, n_known, err) : status;
 }
 
 /* A cell for every column that has a value. */

@@ -31,12 +31,33 @@ static double share(double gamma, double mass)
 
 /* ---- what is asked for ---------------------------------------------------------------------------------------- */
 
-static Status make_core(const Args *args, Model *m, Err *err)
+/* Of a CONFIG also the core, and both rigidly connected. */
+static Status open_model(const Args *args, Model *m, Err *err)
 {
-    const char *word = args_value(args, "--design");
+    struct stat st;
+    const char *name = args->operand, *word = args_value(args, "--design");
+    const int is_there = stat(name, &st) == 0;
     CoreOptions *core = &m->s.core;
     DesignSpace space;
     Designs d;
+    m->has_core = text_ends(name, ".ini") || (!text_ends(name, ".tcl") && is_there && S_ISREG(st.st_mode));
+    settings_defaults(&m->s);
+    if (!is_there && strcmp(name, "guyan") != 0 && strcmp(name, "appendix") != 0) {
+        errno = ENOENT;
+        return fail_missing(err, name);
+    }
+    if (!m->has_core)
+        TRY(option_put_path(m->s.building.model, name, err));
+    TRY(m->has_core ? args_settings(args, &m->s, NULL, NULL, err) : args_apply(args, &m->s, NULL, NULL, err));
+    if (m->s.problem.kind != PROBLEM_TOWER)
+        return bad_data(err, "problem.kind is not tower: %s has no building", name);
+    if (word && !m->has_core)
+        return misused(err, "--design needs a CONFIG, which has a core");
+    TRY(building_load(&m->b, &m->s.building, err));
+    if (frame_is(m->s.building.model))
+        TRY(frame_read(&m->frame, &m->s.building, err));
+    if (!m->has_core)
+        return STATUS_OK;
     m->design = (Design){.t_base = T_BASE_M, .t_top = T_TOP_M};
     TRY(design_space_make(&space, &m->s.design, core_section(core), m->b.n, err));
     if (word) {
@@ -51,30 +72,6 @@ static Status make_core(const Args *args, Model *m, Err *err)
                                err));
     TRY(core_make(&m->core, core, &m->s.building, &m->b, m->design.t_base, m->design.t_top, err));
     return building_joined_hz(&m->core, &m->b, m->zero_gap, err);
-}
-
-static Status open_model(const Args *args, Model *m, Err *err)
-{
-    struct stat st;
-    const char *name = args->operand;
-    const int is_there = stat(name, &st) == 0;
-    m->has_core = text_ends(name, ".ini") || (!text_ends(name, ".tcl") && is_there && S_ISREG(st.st_mode));
-    settings_defaults(&m->s);
-    if (!is_there && strcmp(name, "guyan") != 0 && strcmp(name, "appendix") != 0) {
-        errno = ENOENT;
-        return fail_missing(err, name);
-    }
-    if (!m->has_core)
-        TRY(option_put_path(m->s.building.model, name, err));
-    TRY(m->has_core ? args_settings(args, &m->s, NULL, NULL, err) : args_apply(args, &m->s, NULL, NULL, err));
-    if (m->s.problem.kind != PROBLEM_TOWER)
-        return bad_data(err, "problem.kind is not tower: %s has no building", name);
-    if (args_has(args, "--design") && !m->has_core)
-        return misused(err, "--design needs a CONFIG, which has a core");
-    TRY(building_load(&m->b, &m->s.building, err));
-    if (frame_is(m->s.building.model))
-        TRY(frame_read(&m->frame, &m->s.building, err));
-    return m->has_core ? make_core(args, m, err) : STATUS_OK;
 }
 
 /* ---- answers -------------------------------------------------------------------------------------------------- */

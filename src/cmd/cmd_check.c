@@ -288,26 +288,6 @@ static void describe_study(Check *c, CheckedScene *p, const Problem *problem)
                      all * seconds / (double)threads + search_s + baselines_s));
 }
 
-/* A worker that says nothing that can be understood is a fault; what it says of the design may be of this one alone. */
-static void describe_worker(Check *c, const Settings *s, Adapter *a)
-{
-    Err e = {0}, why = {0};
-    Outcome outcome;
-    double each_s;
-    const Problem *p = adapter_problem(a);
-    const long n = s->search.max_evals, threads = (long)threads_wanted(s->search.threads);
-    if (!note(c, asked_check(a, c->out, &each_s, &outcome, &why, &e), "problem.command", &e))
-        return;
-    if (outcome == OUTCOME_DEAD || outcome == OUTCOME_TIMEOUT || outcome == OUTCOME_GARBLED)
-        note(c, STATUS_BAD_DATA, "problem.command", &why);
-    else if (outcome != OUTCOME_OK)
-        warn("problem.command", why.text, c);
-    const double search_s = search_seconds(s, p);
-    json_put(c->out, "study=%p",
-             json_of("simulations=%ld threads=%ld simulation_s=%g search_s=%g seconds=%g", n, threads, each_s, search_s,
-                     (double)n * each_s / (double)threads + search_s));
-}
-
 /* Limits, further records and whatever else a search opens before it starts. */
 static void open_study(Check *c, const Settings *s, CheckedScene *p)
 {
@@ -339,8 +319,24 @@ static void open_study(Check *c, const Settings *s, CheckedScene *p)
             describe_study(c, p, adapter_problem(adapter));
     } else {
         json_put(c->out, "problem=%p", json_of("variables=%ld objectives=%ld", schema->n_var, schema->n_obj));
-        if (s->problem.kind == PROBLEM_EXTERNAL && json_array_size(c->faults) == 0)
-            describe_worker(c, s, adapter);
+
+        /* A worker that says nothing that can be understood is a fault; what it says of the design may be of this one
+         * alone. */
+        Outcome outcome;
+        Err why = {0};
+        double each_s;
+        if (s->problem.kind == PROBLEM_EXTERNAL && json_array_size(c->faults) == 0 &&
+            note(c, asked_check(adapter, c->out, &each_s, &outcome, &why, &e), "problem.command", &e)) {
+            const long n = s->search.max_evals, threads = (long)threads_wanted(s->search.threads);
+            const double search_s = search_seconds(s, adapter_problem(adapter));
+            if (outcome == OUTCOME_DEAD || outcome == OUTCOME_TIMEOUT || outcome == OUTCOME_GARBLED)
+                note(c, STATUS_BAD_DATA, "problem.command", &why);
+            else if (outcome != OUTCOME_OK)
+                warn("problem.command", why.text, c);
+            json_put(c->out, "study=%p",
+                     json_of("simulations=%ld threads=%ld simulation_s=%g search_s=%g seconds=%g", n, threads, each_s,
+                             search_s, (double)n * each_s / (double)threads + search_s));
+        }
         note(c, tables_have_room(schema, &e), "store", &e); /* with the constraint values of its answer */
     }
     adapter_close(adapter);

@@ -405,22 +405,6 @@ static Status evaluate_with(const Args *args, Settings *s, const Run *run, Err *
     return run ? evaluate_of_run(args, s, run, word, err) : evaluate_by_config(args, s, word, err);
 }
 
-/* Of simulations that others have made. */
-static Status evaluate_counts(const Args *args, Err *err)
-{
-    Fragilities f = {0};
-    Document d = {.drawing = "fragility", .width = 430};
-    Status status = counts_read(&f, args_value(args, "--counts"), args_value(args, "--hazard"), err);
-    if (status == STATUS_OK) {
-        const Evaluations e = {.intensity = f.intensity, .n_levels = f.n_levels, .level = f.level};
-        d.data = json_of("ida=%p", json_pack("{so}", f.intensity, json_numbers(f.n_levels, f.level)));
-        document_fragilities(&d, &f, &e);
-        status = document_give(&d, args, err);
-    }
-    fragilities_free(&f);
-    return status;
-}
-
 static Status run(const Args *args, Err *err)
 {
     Settings s;
@@ -429,8 +413,19 @@ static Status run(const Args *args, Err *err)
                    "--design --record --pga --sa --fragility --set --csv --pelicun --full-model --replicates", err));
     if (args_has(args, "--counts") == (args->operand != NULL))
         return misused(err, "imtet evaluate takes a CONFIG, a RUN or --counts; for example: %s", CMD_EVALUATE.example);
-    if (!args->operand)
-        return evaluate_counts(args, err);
+    if (!args->operand) { /* of simulations that others have made */
+        Fragilities f = {0};
+        Document d = {.drawing = "fragility", .width = 430};
+        Status status = counts_read(&f, args_value(args, "--counts"), args_value(args, "--hazard"), err);
+        if (status == STATUS_OK) {
+            const Evaluations e = {.intensity = f.intensity, .n_levels = f.n_levels, .level = f.level};
+            d.data = json_of("ida=%p", json_pack("{so}", f.intensity, json_numbers(f.n_levels, f.level)));
+            document_fragilities(&d, &f, &e);
+            status = document_give(&d, args, err);
+        }
+        fragilities_free(&f);
+        return status;
+    }
     if (!run_is_there(args->operand))
         return evaluate_with(args, &s, NULL, err);
     TRY(run_read(&r, args->operand, err));

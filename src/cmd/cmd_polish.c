@@ -39,25 +39,6 @@ static void put_objectives(json_t *row, const Schema *schema, const char *end, c
     }
 }
 
-/* One row in natural signs: the polished design as in front.csv but for the id of the design that it came from; then of
- * every objective how it was before, and where they are known the standard deviations of both and the likely error. */
-static json_t *table_of(const Improve *m)
-{
-    const Schema *schema = &m->run.schema;
-    const Evaluation *before = &m->result.designs.row[POLISH_BEFORE], *end = &m->result.designs.row[POLISH_END];
-    json_t *table = json_array(), *row = figures_row(table);
-    json_put(row, "polished_from=%ld", m->run.table.row[m->row].id);
-    for (size_t j = 0; j < schema->n_var; j++)
-        json_object_set_new(row, schema_variable(schema, j)->name, json_number(end->x[j]));
-    for (size_t k = 0; k < schema->n_obj; k++)
-        json_object_set_new(row, schema_objective(schema, k)->name, json_number(end->f[k]));
-    put_objectives(row, schema, "_before", before->f);
-    put_objectives(row, schema, "_before_sd", before->sd);
-    put_objectives(row, schema, "_sd", end->sd);
-    put_objectives(row, schema, "_error", m->result.error[POLISH_END]);
-    return table;
-}
-
 static const char *verdict_of(const Improved *r)
 {
     return !r->has_changed        ? "No improvement was found that keeps the other objectives."
@@ -79,16 +60,31 @@ static Status work(const Args *args, Improve *m, Err *err)
     const Evaluation *before = &r->designs.row[POLISH_BEFORE], *end = &r->designs.row[POLISH_END];
     if (polish_counts(r))
         TRY(improve_store(m, end, err));
+
+    /* One row in natural signs: the polished design as in front.csv but for the id of the design that it came from;
+     * then of every objective how it was before, and where they are known the standard deviations of both and the
+     * likely error. */
+    const Schema *schema = &m->run.schema;
+    const long from = m->run.table.row[m->row].id;
+    json_t *rows = json_array(), *row = json_put(figures_row(rows), "polished_from=%ld", from);
+    for (size_t j = 0; j < schema->n_var; j++)
+        json_object_set_new(row, schema_variable(schema, j)->name, json_number(end->x[j]));
+    for (size_t k = 0; k < schema->n_obj; k++)
+        json_object_set_new(row, schema_objective(schema, k)->name, json_number(end->f[k]));
+    put_objectives(row, schema, "_before", before->f);
+    put_objectives(row, schema, "_before_sd", before->sd);
+    put_objectives(row, schema, "_sd", end->sd);
+    put_objectives(row, schema, "_error", m->result.error[POLISH_END]);
     Document d = {.data = json_of("design=%ld verdict=%s tried=%zu simulated=%zu failed=%zu seconds=%g polished=%p",
                                   m->id, verdict_of(r), r->cost.n_evaluated, r->cost.n_simulated, r->cost.n_failed,
-                                  r->cost.seconds, table_of(m)),
-                  .rows = table_of(m)};
+                                  r->cost.seconds, json_incref(rows)),
+                  .rows = rows};
     json_t *table = document_table(&d);
-    improve_row(m, table, "before", POLISH_BEFORE, m->run.table.row[m->row].id);
+    improve_row(m, table, "before", POLISH_BEFORE, from);
     if (r->has_changed)
         improve_row(m, table, "polished", POLISH_END, m->id);
-    for (size_t k = 0; r->has_changed && k < m->run.schema.n_obj; k++) {
-        const Column *c = schema_objective(&m->run.schema, k);
+    for (size_t k = 0; r->has_changed && k < schema->n_obj; k++) {
+        const Column *c = schema_objective(schema, k);
         const double gain = c->sense * (before->f[k] - end->f[k]);
         const double error = hypot(before->sd[k], end->sd[k]) / sqrt((double)m->config.replicates);
         char known[60] = "";

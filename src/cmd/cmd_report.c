@@ -12,27 +12,6 @@
 #include "settings/options.h"
 #include "store/notes.h"
 
-/* The design in detail, under the records of the study and those of --record, or built-in ones. */
-static Status open_report(const Args *args, const Run *run, const RecordPaths *moved, OtherRecords *records, Report *r,
-                          Err *err)
-{
-    const char *design = args_value(args, "--design"), *path;
-    Settings other = *run->settings;
-    size_t row;
-    TRY(args_apply(args, &other, NULL, NULL, err));
-    TRY(elsewhere_of_study(records, &other.motion, err));
-    for (int i = 0; (path = args_next(args, "--record", &i));)
-        TRY(elsewhere_add(records, path, err));
-    TRY(elsewhere_otherwise(records, &other.motion, err));
-    TRY(design_of_run(run, design ? design : "knee", &row, NULL, err));
-    const DetailOptions options = {.other = &other,
-                                   .moved = *moved,
-                                   .records = records->source,
-                                   .n_records = records->n,
-                                   .with_ladder = !args_has(args, "--pictures")};
-    return report_open(r, run, row, &options, err);
-}
-
 /* Where the page goes, or the pictures or the dossier instead of it. */
 static Status take_target(const Args *args, char path[PATH_MAX], Err *err)
 {
@@ -76,8 +55,24 @@ static Status report(const Args *args, const Run *run, Err *err)
         : has_pictures && run->n_front > 0 ? browser_check(path, err)
                                            : STATUS_OK);
 
-    /* 2. Dossier and page simulate with the records of the run, where they are now. */
-    status = open_report(args, run, &moved, &records, &r, err);
+    /* 2. The design in detail, under the records of the study and those of --record, or built-in ones. */
+    const char *design = args_value(args, "--design"), *record;
+    Settings other = s; /* of the records that are not the run's */
+    size_t row;
+    TRY(args_apply(args, &other, NULL, NULL, err));
+    TRY(elsewhere_of_study(&records, &other.motion, err));
+    for (int i = 0; (record = args_next(args, "--record", &i));)
+        TRY(elsewhere_add(&records, record, err));
+    TRY(elsewhere_otherwise(&records, &other.motion, err));
+    TRY(design_of_run(run, design ? design : "knee", &row, NULL, err));
+    const DetailOptions options = {.other = &other,
+                                   .moved = moved,
+                                   .records = records.source,
+                                   .n_records = records.n,
+                                   .with_ladder = !has_pictures};
+    status = report_open(&r, run, row, &options, err);
+
+    /* 3. Dossier and page simulate with the records of the run, where they are now. */
     if (is_dossier) {
         THEN(status, record_paths_find(&s, run->provenance, &moved, err));
         if (status == STATUS_OK) {

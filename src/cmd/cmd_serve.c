@@ -6,17 +6,6 @@
 #include "cmd/signals.h"
 #include "serve/serve.h"
 
-static void greet(const Server *s, const char *folder)
-{
-    char host[HOST_NAME_MAX + 1] = "HOST";
-    const char *user = getenv("USER");
-    gethostname(host, sizeof host - 1);
-    printf("%s is shown at\n  %s\n"
-           "from another machine run  ssh -N -L %d:127.0.0.1:%d %s@%s  and open the same address\nCtrl-C ends it\n",
-           folder, serve_url(s), serve_port(s), serve_port(s), user && *user ? user : "USER", host);
-    fflush(stdout);
-}
-
 static Status run(const Args *args, Err *err)
 {
     Server *server;
@@ -27,7 +16,14 @@ static Status run(const Args *args, Err *err)
     options.port = (int)port;
     signals_catch();
     TRY(serve_open(&server, &options, err));
-    greet(server, args->operand);
+    char host[HOST_NAME_MAX + 1] = "HOST";
+    const char *user = getenv("USER");
+    gethostname(host, sizeof host - 1);
+    printf("%s is shown at\n  %s\n"
+           "from another machine run  ssh -N -L %d:127.0.0.1:%d %s@%s  and open the same address\nCtrl-C ends it\n",
+           args->operand, serve_url(server), serve_port(server), serve_port(server), user && *user ? user : "USER",
+           host);
+    fflush(stdout);
     while (!signals_asked(NULL))
         nanosleep(&(struct timespec){.tv_nsec = 100000000}, NULL);
     _exit(fflush(stdout)); /* nothing is to be stored, and no simulation under way is waited for */

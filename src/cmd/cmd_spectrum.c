@@ -29,25 +29,6 @@ typedef struct {
 
 /* ---- numbers ----------------------------------------------------------------------------------------------------- */
 
-/* The same motion without base line and filters, at the same scale. */
-static Status compare_recorded(Spectrum *s, Err *err)
-{
-    Motion m = {0};
-    MotionOptions o = s->options;
-    o.baseline = BASELINE_NONE;
-    o.highpass_hz = o.lowpass_hz = 0;
-    motion_unscale(&o);
-    o.factor = s->motion.scale;
-    TRY(motion_open(&m, &o, err));
-    const Status status = motion_scale(&m, &o, err);
-    if (status == STATUS_OK) {
-        motion_figures(&m, &s->recorded);
-        spectrum_psa(&m, DAMPING, N_PERIODS, s->T, s->recorded_psa);
-    }
-    motion_free(&m);
-    return status;
-}
-
 /* Does the displacement mean something? */
 static int is_corrected(const Spectrum *s)
 {
@@ -66,8 +47,22 @@ static Status spectrum_open(Spectrum *s, const MotionOptions *o, Err *err)
     spectrum_psa(m, DAMPING, N_PERIODS, s->T, s->psa);
     motion_figures(m, &s->figures);
     s->is_processed = motion_is_corrected(o) || o->lowpass_hz > 0;
-    if (s->is_processed) /* before there are histories: a record being read takes as much memory again */
-        TRY(compare_recorded(s, err));
+    if (s->is_processed) {  /* before there are histories: a record being read takes as much memory again */
+        Motion as_is = {0}; /* without base line and filters, at the same scale */
+        MotionOptions plain = *o;
+        plain.baseline = BASELINE_NONE;
+        plain.highpass_hz = plain.lowpass_hz = 0;
+        motion_unscale(&plain);
+        plain.factor = m->scale;
+        TRY(motion_open(&as_is, &plain, err));
+        const Status status = motion_scale(&as_is, &plain, err);
+        if (status == STATUS_OK) {
+            motion_figures(&as_is, &s->recorded);
+            spectrum_psa(&as_is, DAMPING, N_PERIODS, s->T, s->recorded_psa);
+        }
+        motion_free(&as_is);
+        TRY(status);
+    }
     TRY_ROOM(s->velocity, 3 * m->n, "samples", err);
     s->displacement = s->velocity + m->n;
     s->husid = s->displacement + m->n;

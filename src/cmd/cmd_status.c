@@ -78,31 +78,6 @@ static json_t *describe(const char *folder, const Run *run, const Standing *s)
                        : o;
 }
 
-/* What people read in tables, or wait for: designs of the front are simulated. */
-static void describe_more(json_t *o, const Run *run, const Standing *s)
-{
-    FrontReview review = front_review(run);
-    Err err = {0};
-    json_t *sessions = json_array(), *front = json_null();
-    for (size_t i = 0; i < run->n_sessions; i++) {
-        const RunSession *r = &run->session[i];
-        const Effort e = effort_of(run, i);
-        json_array_append_new(
-            sessions,
-            json_of("started=%s ended=%s stopped=%s host=%s pid=%ld threads=%ld simulated_before=%ld seconds=%g "
-                    "waiting_share=%g surrogate_share=%g search_share=%g busy_share=%g",
-                    r->started, r->ended[0] ? r->ended : NULL, r->stopped[0] ? r->stopped : NULL, r->host, r->pid,
-                    r->threads, r->simulated_before, r->seconds, e.waiting, e.surrogate, e.search, e.busy));
-    }
-    if (review.n_gaps > 0 && s->state == RUN_FINISHED) /* a run under way has no time for it */
-        front_review_of_run(run, &review, &err);
-    if (review.n_gaps > 0)
-        front = json_review(&review);
-    if (err.code != STATUS_OK)
-        json_put(front, "never_closing=%p never_closing_unknown=%s", json_null(), err.text);
-    json_put(o, "generations=%p sessions=%p front_review=%p", json_generations(run), sessions, front);
-}
-
 /* -- the runs of a folder ------------------------------------------------------------------------------------------ */
 
 /* A run that cannot be read says why, and the others follow. */
@@ -195,10 +170,29 @@ static Status run(const Args *args, Err *err)
     Document d = {.data = describe(folder, &run, &standing)};
     say_run(&d, folder, &run, &standing, json_copy(d.data));
     say_generations(&d, &run);
-    if (args_has(args, "--json"))
-        describe_more(d.data, &run, &standing);
-    if (args_has(args, "--json"))
-        json_put(d.data, "expected_gain=%g", expected);
+    if (args_has(args, "--json")) { /* what people read in tables, or wait for: designs of the front are simulated */
+        FrontReview review = front_review(&run);
+        Err why = {0};
+        json_t *sessions = json_array(), *front = json_null();
+        for (size_t i = 0; i < run.n_sessions; i++) {
+            const RunSession *r = &run.session[i];
+            const Effort e = effort_of(&run, i);
+            json_array_append_new(
+                sessions,
+                json_of("started=%s ended=%s stopped=%s host=%s pid=%ld threads=%ld simulated_before=%ld seconds=%g "
+                        "waiting_share=%g surrogate_share=%g search_share=%g busy_share=%g",
+                        r->started, r->ended[0] ? r->ended : NULL, r->stopped[0] ? r->stopped : NULL, r->host, r->pid,
+                        r->threads, r->simulated_before, r->seconds, e.waiting, e.surrogate, e.search, e.busy));
+        }
+        if (review.n_gaps > 0 && standing.state == RUN_FINISHED) /* a run under way has no time for it */
+            front_review_of_run(&run, &review, &why);
+        if (review.n_gaps > 0)
+            front = json_review(&review);
+        if (why.code != STATUS_OK)
+            json_put(front, "never_closing=%p never_closing_unknown=%s", json_null(), why.text);
+        json_put(d.data, "generations=%p sessions=%p front_review=%p expected_gain=%g", json_generations(&run),
+                 sessions, front, expected);
+    }
     THEN(status, document_give(&d, args, err));
     document_free(&d);
     run_free(&run);

@@ -27,19 +27,6 @@ static void put_pelicun(json_t *row, const SimResult *r, double pga_g, int n_flo
         put(row, "RID", j + 1, r ? fabs(r->residual_drift_m[j]) / storey_m(r, j) : NAN, "unitless");
 }
 
-static void put_response(json_t *row, const SimResult *r, double pga_g)
-{
-    double height_m = 0;
-    put(row, "PFA", 0, GRAVITY * pga_g, "");
-    for (int j = 0; j < r->n_floors; j++) {
-        put(row, "PFA", j + 1, GRAVITY * r->peak_acceleration_g[j], "");
-        put(row, "PFD", j + 1, r->peak_displacement_m[j], "");
-        put(row, "PID", j + 1, r->drift_ratio[j], "");
-        height_m += storey_m(r, j);
-    }
-    put(row, "PRD", 1, r->peak_displacement_m[r->n_floors - 1] / height_m, "");
-}
-
 Status demands_write(const Evaluations *e, const char *path, Err *err)
 {
     const int is_response = strcmp(basename(path), "response.csv") == 0;
@@ -57,10 +44,19 @@ Status demands_write(const Evaluations *e, const char *path, Err *err)
             put_pelicun(json_put(figures_row(table), "=%s", "Units"), NULL, NAN, r->n_floors, r->yields);
         json_t *row = figures_row(table);
         json_object_set_new(row, is_response ? "id" : "", json_integer((json_int_t)(n++) + is_response));
-        if (is_response)
-            put_response(row, r, e->run[i].pga_g);
-        else
+        if (!is_response) {
             put_pelicun(row, r, e->run[i].pga_g, r->n_floors, r->yields);
+            continue;
+        }
+        double height_m = 0;
+        put(row, "PFA", 0, GRAVITY * e->run[i].pga_g, "");
+        for (int j = 0; j < r->n_floors; j++) {
+            put(row, "PFA", j + 1, GRAVITY * r->peak_acceleration_g[j], "");
+            put(row, "PFD", j + 1, r->peak_displacement_m[j], "");
+            put(row, "PID", j + 1, r->drift_ratio[j], "");
+            height_m += storey_m(r, j);
+        }
+        put(row, "PRD", 1, r->peak_displacement_m[r->n_floors - 1] / height_m, "");
     }
     return rows_write(table, path, err);
 }

@@ -262,19 +262,6 @@ void design_label(const Designs *d, const char *word, size_t i, char label[DESIG
         snprintf(label, DESIGN_LABEL_MAX, "%.120s:%zu", name, i + 1);
 }
 
-/* Row with these variables, or run->table.n; one of the front first. */
-static size_t row_of(const Run *run, const double x[])
-{
-    const size_t size = run->schema.n_var * sizeof *x;
-    for (size_t i = 0; i < run->n_front; i++)
-        if (memcmp(run_x(run, run->front[i]), x, size) == 0)
-            return run->front[i];
-    for (size_t i = 0; i < run->table.n; i++)
-        if (memcmp(run_x(run, i), x, size) == 0)
-            return i;
-    return run->table.n;
-}
-
 Status design_of_run(const Run *run, const char *word, size_t *row, Designs *elsewhere, Err *err)
 {
     struct stat s;
@@ -286,7 +273,13 @@ Status design_of_run(const Run *run, const char *word, size_t *row, Designs *els
     if (is_name || (!strpbrk(word, "/:.") && stat(word, &s) != 0))
         return run_pick(run, word, row, err);
     TRY(designs_take_one(&d, word, &run->schema.design, NULL, 0, NULL, err));
-    *row = row_of(run, d.x);
+    const size_t size = run->schema.n_var * sizeof *d.x; /* one of the front first */
+    size_t i = 0;
+    for (*row = run->table.n; i < run->n_front + run->table.n && *row == run->table.n; i++) {
+        const size_t at = i < run->n_front ? run->front[i] : i - run->n_front;
+        if (memcmp(run_x(run, at), d.x, size) == 0)
+            *row = at;
+    }
     if (*row == run->table.n && elsewhere) {
         *elsewhere = d;
         return STATUS_OK;

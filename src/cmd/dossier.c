@@ -20,7 +20,7 @@ static const double LEVEL_STEP_G = 0.1;
 static const char RESPONSE[] = "j1_m,j2_m,drift_ratio,j3_g,ed1_pct,ed5_10_pct,edcs_pct";
 
 typedef struct {
-    Document doc;
+    Document *doc;
     const Report *r;
     const Detail *d;
     const Settings *s;
@@ -54,7 +54,7 @@ static void add_response(const Dossier *o, json_t *table, const char *label, con
 
 static void say_summary(Dossier *o)
 {
-    Document *doc = &o->doc;
+    Document *doc = o->doc;
     const Run *run = o->r->run;
     const Schema *schema = &run->schema;
     double error[OBJECTIVES_MAX];
@@ -91,14 +91,14 @@ static void say_building(Dossier *o)
     const Settings *s = o->s;
     const int has_frame = frame_is(s->building.model);
     json_t *drawn = NULL;
-    document_add(&o->doc, "h2", "Building, core and ground motion");
+    document_add(o->doc, "h2", "Building, core and ground motion");
     Status status = building_load(&b, &s->building, &e);
     if (has_frame)
         THEN(status, frame_read(&frame, &s->building, &e));
     THEN(status, building_drawing(&b, has_frame ? &frame : NULL, 8, &drawn, &e));
     if (status == STATUS_OK) {
         document_list(
-            &o->doc,
+            o->doc,
             json_of("floors=%d mass of the building [t]=%g first period of the building [s]=%g damping ratio=%g "
                     "mass of the core [t]=%g first period of the core [s]=%g damping ratio of the core=%g "
                     "side of the core [m]=%g restitution=%g radius of a contact [m]=%g "
@@ -109,10 +109,10 @@ static void say_building(Dossier *o)
                     s->contact.restitution, s->contact.radius_m, d->pga_g, d->duration_s, s->building.model,
                     s->core.foundation, o->record));
         json_object_set_new(o->drawings, "panels", drawn);
-        document_draw(&o->doc, "panels",
+        document_draw(o->doc, "panels",
                       "The building to scale; its first mode shapes with period and share of the mass.");
     }
-    document_say(&o->doc, "%s", e.text);
+    document_say(o->doc, "%s", e.text);
     building_free(&b);
     frame_free(&frame);
 }
@@ -124,9 +124,9 @@ static void say_design(Dossier *o)
     const SimResult *r = &d->result[SCENE_IMPACT];
     Design design;
     design_of(&o->r->run->schema.design, o->x, &design);
-    document_add(&o->doc, "h2", "The design");
-    document_draw(&o->doc, "gaps", "");
-    json_t *table = document_table(&o->doc);
+    document_add(o->doc, "h2", "The design");
+    document_draw(o->doc, "gaps", "");
+    json_t *table = document_table(o->doc);
     for (int j = 0; j < d->n_floors; j++) {
         const int has_stop = d->gap_m[j] < INFINITY;
         const struct {
@@ -147,9 +147,9 @@ static void say_design(Dossier *o)
                 figures_number(row, cells[k].column, cells[k].value);
     }
     if (design.mass_kg > 0)
-        document_say(&o->doc, "Tuned mass: force %.3g MN, stroke %.3g mm.", 1e-6 * r->device[FLOORS_MAX].force,
+        document_say(o->doc, "Tuned mass: force %.3g MN, stroke %.3g mm.", 1e-6 * r->device[FLOORS_MAX].force,
                      1e3 * r->device[FLOORS_MAX].stroke);
-    document_say(&o->doc, "Forces and strokes under %s.", o->record);
+    document_say(o->doc, "Forces and strokes under %s.", o->record);
 }
 
 /* ---- how it responds ------------------------------------------------------------------------------------------- */
@@ -180,8 +180,8 @@ static void say_response(Dossier *o)
     FullModel m = {0};
     Err e = {0};
     char label[64];
-    document_add(&o->doc, "h2", "The response by four calculations");
-    json_t *table = document_table(&o->doc);
+    document_add(o->doc, "h2", "The response by four calculations");
+    json_t *table = document_table(o->doc);
     add_response(o, table, "as the study knows it", &o->d->result[SCENE_IMPACT]);
     add_with(o, table, "accuracy fine", "sim.accuracy", "fine");
     add_with(o, table, "by CVODE (SUNDIALS)", "sim.engine", "cvode");
@@ -191,12 +191,12 @@ static void say_response(Dossier *o)
     }
     full_model_free(&m);
     document_say(
-        &o->doc,
+        o->doc,
         "All under %s. CVODE integrates the equations of motion without the study's engine. Contacts that graze "
         "may separate two calculations: J3 is then the least certain figure. %s",
         o->record, e.text);
-    document_draw(&o->doc, "peaks", "Peaks over the height.");
-    document_draw(&o->doc, "displacement",
+    document_draw(o->doc, "peaks", "Peaks over the height.");
+    document_draw(o->doc, "displacement",
                   "Below each history its wavelet amplitude; dashed: natural frequencies of the building.");
 }
 
@@ -205,7 +205,7 @@ static void say_response(Dossier *o)
 /* What it reaches, the study's limits on what it judged (of several simulations none by itself), and idle stops. */
 static void say_demand(Dossier *o)
 {
-    Document *doc = &o->doc;
+    Document *doc = o->doc;
     const Run *run = o->r->run;
     int borne[MEASURES_LISTED];
     char most[64], first[220], never[5 * FLOORS_MAX + 16] = "", text[64];
@@ -254,7 +254,7 @@ static void say_demand(Dossier *o)
 /* Records one by one; then all at every level, with the fragility of a drift ratio of 2 %. */
 static void say_records(Dossier *o, size_t n, const char *const records[])
 {
-    Document *doc = &o->doc;
+    Document *doc = o->doc;
     const Detail *d = o->d;
     char label[200];
     double level[LEVELS];
@@ -298,10 +298,10 @@ static void say_sensitivities(Dossier *o)
     Sensitivity *list = NULL;
     size_t n = 0;
     Err e = {0};
-    document_add(&o->doc, "h2", "What the figures depend on");
+    document_add(o->doc, "h2", "What the figures depend on");
     if (sensitivity_find(o->s, o->x, 1, &list, &n, &e) == STATUS_OK)
-        document_slopes(&o->doc, n, list);
-    document_say(&o->doc, "%s", e.text);
+        document_slopes(o->doc, n, list);
+    document_say(o->doc, "%s", e.text);
     free(list);
 }
 
@@ -310,7 +310,7 @@ static void say_sensitivities(Dossier *o)
 static void say_not_covered(Dossier *o)
 {
     const Settings *s = o->s;
-    Document *doc = &o->doc;
+    Document *doc = o->doc;
     char text[UPLIFT_WORDS_MAX];
     document_add(doc, "h2", "What is not covered");
     document_add(doc, "li",
@@ -351,17 +351,17 @@ static void say_provenance(Dossier *o)
     json_t *settings = json_object(), *from = json_loads(run->provenance, 0, NULL);
     Settings none;
     char path[PATH_MAX], used[4 * PATH_MAX + 3], folder[4 * PATH_MAX + 3];
-    document_add(&o->doc, "h2", "Provenance");
+    document_add(o->doc, "h2", "Provenance");
     json_object_del(from, "flags");
-    document_list(&o->doc, from);
+    document_list(o->doc, from);
     settings_defaults(&none);
     settings_compare(&none, run->settings, put_setting, settings);
-    document_say(&o->doc,
+    document_say(o->doc,
                  "Hashes are FNV-1a, 64 bit, of the bytes of the files. Settings that differ from their defaults:");
-    document_list(&o->doc, settings);
+    document_list(o->doc, settings);
     folder_path(run->folder, "settings.ini", path);
-    document_say(&o->doc, "To repeat the row of accuracy fine:");
-    document_add(&o->doc, "code", "imtet simulate %s --design %s:%ld --set sim.accuracy=fine --json",
+    document_say(o->doc, "To repeat the row of accuracy fine:");
+    document_add(o->doc, "code", "imtet simulate %s --design %s:%ld --set sim.accuracy=fine --json",
                  text_shell(path, used), text_shell(run->folder, folder), run->table.row[o->r->chosen].id);
 }
 
@@ -386,7 +386,8 @@ Status dossier_write(const Report *r, const Settings *s, size_t n, const char *c
     size_t length;
     Output o;
     const Detail *d = &r->detail;
-    Dossier all = {.r = r, .d = d, .s = s, .x = run_x(r->run, r->chosen), .n_records = d->n_records};
+    Document doc = {0};
+    Dossier all = {.doc = &doc, .r = r, .d = d, .s = s, .x = run_x(r->run, r->chosen), .n_records = d->n_records};
     TRY(measures_order(&all.order, RESPONSE, "none", 0, err));
     FILE *out = text_open(&body, &length);
     if (!out)
@@ -400,15 +401,15 @@ Status dossier_write(const Report *r, const Settings *s, size_t n, const char *c
     say_design(&all);
     say_response(&all);
     say_demand(&all);
-    document_add(&all.doc, "h2", "Which effects the model needs");
+    document_add(all.doc, "h2", "Which effects the model needs");
     if (d->ladder || d->no_ladder.text[0])
-        document_draw(&all.doc, "ladder", "");
+        document_draw(all.doc, "ladder", "");
     say_records(&all, n, records);
     say_sensitivities(&all);
     say_not_covered(&all);
     say_provenance(&all);
     fputs("<main class=\"paper\">\n", out);
-    document_print(&all.doc, out, 1);
+    document_print(all.doc, out, 1);
     fputs("</main>\n", out);
     json_t *run = json_put(report_json(r), "paper=%p drawings=%p", json_array(), all.drawings);
     Status status = text_close(out) ? fail_memory(err, 1, "a dossier") : STATUS_OK;

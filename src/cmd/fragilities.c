@@ -10,29 +10,6 @@ static const double OUTSIDE_NOTICEABLE = 0.05; /* share of an annual loss that l
 
 /* ---- what is asked for ------------------------------------------------------------------------------------------- */
 
-/* "j3_g=5" as "j3_g<=5", what is better when it is more as ">=". */
-static Status write_limits(const Schema *schema, const char *list, char out[OPTION_TEXT_MAX], Err *err)
-{
-    char item[128];
-    size_t used = 0, k;
-    for (size_t i = 0; i < list_count(list); i++) {
-        char *is = list_item(list, i, item, sizeof item) ? strchr(item, '=') : NULL;
-        if (!is || is == item)
-            return misused(err, "--fragility %.80s: is not a list of NAME=NUMBER, or `limits`", list);
-        const char *relation = "=";
-        *is = 0;
-        if (is[-1] != '<' && is[-1] != '>') {
-            TRY(schema_pick(schema, schema->n_obj + schema->n_extra, "--fragility", item, &k, err));
-            relation = schema_objective(schema, k)->sense > 0 ? "<=" : ">=";
-        }
-        used +=
-            (size_t)snprintf(out + used, OPTION_TEXT_MAX - used, "%s%s%s%s", used ? "," : "", item, relation, is + 1);
-        if (used >= OPTION_TEXT_MAX)
-            return misused(err, "--fragility: the list is too long");
-    }
-    return STATUS_OK;
-}
-
 static Status take_hazard(Fragilities *f, const Table *t, const char *intensity, Err *err)
 {
     const int column[2] = {table_column(t, intensity), table_column(t, "rate_per_year")};
@@ -66,10 +43,24 @@ Status fragilities_read(Fragilities *f, const Schema *schema, const char *list, 
                         const char *intensity, Settings *s, Err *err)
 {
     Err why = {0};
-    char item[128];
+    char item[128], *out = s->search.limits;
+    size_t used = 0, result;
     f->schema = schema;
-    if (strcmp(list, "limits") != 0)
-        TRY(write_limits(schema, list, s->search.limits, err));
+    for (size_t i = 0; strcmp(list, "limits") != 0 && i < list_count(list); i++) {
+        char *is = list_item(list, i, item, sizeof item) ? strchr(item, '=') : NULL;
+        if (!is || is == item)
+            return misused(err, "--fragility %.80s: is not a list of NAME=NUMBER, or `limits`", list);
+        const char *relation = "="; /* "j3_g=5" becomes "j3_g<=5", what is better when it is more ">=" */
+        *is = 0;
+        if (is[-1] != '<' && is[-1] != '>') {
+            TRY(schema_pick(schema, schema->n_obj + schema->n_extra, "--fragility", item, &result, err));
+            relation = schema_objective(schema, result)->sense > 0 ? "<=" : ">=";
+        }
+        used +=
+            (size_t)snprintf(out + used, OPTION_TEXT_MAX - used, "%s%s%s%s", used ? "," : "", item, relation, is + 1);
+        if (used >= OPTION_TEXT_MAX)
+            return misused(err, "--fragility: the list is too long");
+    }
     for (size_t i = 0; i < list_count(s->search.limits); i++) { /* one by one: a measure may have several */
         Limits one;
         list_item(s->search.limits, i, item, sizeof item);

@@ -68,30 +68,12 @@ static Status verify_under(const Args *args, Job *job, const Settings *s, Docume
 }
 
 /* --design; of a run also ID, knee, best_NAME alone. run NULL: there is none. */
-static Status take_designs(const Args *args, const Run *run, Job *job, Settings *s, Err *err)
-{
-    const char *word = args_value(args, "--design");
-    char own[PATH_MAX + 64];
-    struct stat there;
-    if (word && strcmp(word, "none") == 0) {
-        job->kind = SCENE_NO_CORE;
-        return STATUS_OK;
-    }
-    if (!word && !run)
-        return misused(err, "--design is missing: " DESIGN_WORDS "; none: the building alone");
-    if (run && (!word || (!strpbrk(word, "/:") && stat(word, &there) != 0))) {
-        snprintf(own, sizeof own, "%s:%s", run->folder, word ? word : "knee");
-        word = own;
-    }
-    TRY(designs_take(&job->designs, word, &job->space, s, !args_gives(args, "sim.accuracy"), NULL, err));
-    job->n = job->designs.n;
-    return STATUS_OK;
-}
-
 Status show_full_model(const Args *args, Settings *s, const Run *run, Err *err)
 {
     const int as_json = args_has(args, "--json");
-    const char *pga = args_value(args, "--pga"), *path;
+    const char *pga = args_value(args, "--pga"), *word = args_value(args, "--design"), *path;
+    char own[PATH_MAX + 64];
+    struct stat there;
     Job job = {.n = 1, .estimates = s->sim.engine == ENGINE_FAST && !as_json};
 
     /* 1. What is asked for. */
@@ -106,7 +88,20 @@ Status show_full_model(const Args *args, Settings *s, const Run *run, Err *err)
     s->sim.forces = as_json;
     TRY(tower_space(s, &job.space, err));
     TRY(measures_order(&job.order, s->search.objectives, s->search.limits, job.space.n_floors, err));
-    TRY(take_designs(args, run, &job, s, err));
+
+    /* --design; of a run also ID, knee, best_NAME alone. */
+    if (word && strcmp(word, "none") == 0) {
+        job.kind = SCENE_NO_CORE;
+    } else {
+        if (!word && !run)
+            return misused(err, "--design is missing: " DESIGN_WORDS "; none: the building alone");
+        if (run && (!word || (!strpbrk(word, "/:") && stat(word, &there) != 0))) {
+            snprintf(own, sizeof own, "%s:%s", run->folder, word ? word : "knee");
+            word = own;
+        }
+        TRY(designs_take(&job.designs, word, &job.space, s, !args_gives(args, "sim.accuracy"), NULL, err));
+        job.n = job.designs.n;
+    }
 
     /* 2. Under the settings' own record, or each that is named. */
     Document d = {.data = json_array()};

@@ -39,15 +39,30 @@ void document_model(Document *d, const json_t *model)
     }
 }
 
-/* What to search with, and the designs that need more, by both models. */
-static void say_more(Document *d, const json_t *confirmed, const char *folder)
+void document_model_confirmed(Document *d, const json_t *model, const char *folder)
 {
+    const json_t *confirmed = json_object_get(model, "confirmed"), *within = json_object_get(model, "tolerance");
+    json_t *more = json_object_get(confirmed, "more"), *designs = json_object_get(confirmed, "designs"), *value, *one;
     char text[4 * PATH_MAX + 3], *sets = NULL;
     const char *key;
-    json_t *value, *one;
     size_t length, i;
+    if (!confirmed)
+        return;
+    if (json_array_size(designs) == 0) {
+        document_say(d, "model: not confirmed: with all effects the simulations of the knee and the best designs fail");
+        return;
+    }
+    if (json_object_size(more) == 0) {
+        document_say(d,
+                     "model: enough for the knee and the best of each objective: with all effects J1, drift and J3 are "
+                     "within %.2g, %.2g, %.2g %%",
+                     number(within, "j1_m_pct"), number(within, "drift_ratio_pct"), number(within, "j3_g_pct"));
+        return;
+    }
+
+    /* What to search with, and the designs that need more, by both models. */
     FILE *f = text_open(&sets, &length);
-    json_object_foreach(json_object_get(confirmed, "more"), key, value)
+    json_object_foreach(more, key, value)
     {
         if (f)
             text_set(f, "%s=%s", key, json_string_value(value));
@@ -58,30 +73,14 @@ static void say_more(Document *d, const json_t *confirmed, const char *folder)
     document_say(d, "  %s optimize %s --new%s", program_invocation_name, text_shell(folder, text), sets);
     free(sets);
     json_t *table = document_table(d);
-    json_array_foreach(json_object_get(confirmed, "designs"), i, one)
+    json_array_foreach(designs, i, one)
     {
-        const json_t *set = json_object_get(one, "by_the_set"), *more = json_object_get(one, "with_more");
+        const json_t *set = json_object_get(one, "by_the_set"), *with = json_object_get(one, "with_more");
         if (json_is_false(json_object_get(one, "is_enough")))
             json_put(
                 figures_row(table),
                 "design=%ld record=%ld j1_m=%g more_j1_m=%g drift_ratio=%g more_drift_ratio=%g j3_g=%g more_j3_g=%g",
-                whole(one, "design"), whole(one, "record"), number(set, "j1_m"), number(more, "j1_m"),
-                number(set, "drift_ratio"), number(more, "drift_ratio"), number(set, "j3_g"), number(more, "j3_g"));
+                whole(one, "design"), whole(one, "record"), number(set, "j1_m"), number(with, "j1_m"),
+                number(set, "drift_ratio"), number(with, "drift_ratio"), number(set, "j3_g"), number(with, "j3_g"));
     }
-}
-
-void document_model_confirmed(Document *d, const json_t *model, const char *folder)
-{
-    const json_t *confirmed = json_object_get(model, "confirmed"), *within = json_object_get(model, "tolerance");
-    if (!confirmed)
-        return;
-    if (json_array_size(json_object_get(confirmed, "designs")) == 0)
-        document_say(d, "model: not confirmed: with all effects the simulations of the knee and the best designs fail");
-    else if (json_object_size(json_object_get(confirmed, "more")) > 0)
-        say_more(d, confirmed, folder);
-    else
-        document_say(d,
-                     "model: enough for the knee and the best of each objective: with all effects J1, drift and J3 are "
-                     "within %.2g, %.2g, %.2g %%",
-                     number(within, "j1_m_pct"), number(within, "drift_ratio_pct"), number(within, "j3_g_pct"));
 }

@@ -8,17 +8,6 @@
 
 static const char RESULTS[] = "results";
 
-static int has_step_up(const char *path)
-{
-    for (const char *part = path; *part; part += strspn(part, "/")) {
-        const size_t n = strcspn(part, "/");
-        if (n == 2 && strncmp(part, "..", 2) == 0)
-            return 1;
-        part += n;
-    }
-    return 0;
-}
-
 /* Where the part of the path that is there already leads, links followed. */
 static int find_existing(const char *path, char found[PATH_MAX])
 {
@@ -47,7 +36,13 @@ Status output_place_check(const char *out, const char *settings_file, Err *err)
     folder_of(settings_file, own);
     if (realpath(own, results) && realpath(out, there) && strcmp(results, there) == 0)
         return STATUS_OK;
-    if (!is_below(path, RESULTS) || has_step_up(path))
+    int has_step_up = 0;
+    for (const char *part = path; *part; part += strspn(part, "/")) {
+        const size_t n = strcspn(part, "/");
+        has_step_up |= n == 2 && strncmp(part, "..", 2) == 0;
+        part += n;
+    }
+    if (!is_below(path, RESULTS) || has_step_up)
         return bad_data(
             err,
             "%s: run.out: %.200s is not below %s/, the only place where a settings file may write; name another "

@@ -69,11 +69,16 @@ static void read_ladder(const json_t *model, Ladder *l)
     }
 }
 
-/* The rows of knee and best designs, each once. */
-static size_t named_rows(const Run *run, size_t rows[1 + OBJECTIVES_MAX])
+static Status confirm(const Run *run, json_t *model, const Observer *stop, Err *err)
 {
-    size_t n = 0;
-    for (size_t k = 0; k <= run->schema.n_obj && run->n_front > 0; k++) {
+    size_t rows[1 + OBJECTIVES_MAX], n_cases;
+    const size_t n_var = run->schema.n_var;
+    size_t n = 0; /* rows of knee and best designs, each once */
+    Ladder before = {0}, now;
+    ModelCase *cases;
+    double *X;
+    json_t *designs = json_array(), *more = json_object();
+    for (size_t k = 0; k <= run->schema.n_obj; k++) {
         const size_t row = k == 0 ? run_knee(run) : run_best(run, k - 1);
         size_t i = 0;
         while (i < n && rows[i] != row)
@@ -81,17 +86,6 @@ static size_t named_rows(const Run *run, size_t rows[1 + OBJECTIVES_MAX])
         rows[n] = row;
         n += i == n;
     }
-    return n;
-}
-
-static Status confirm(const Run *run, json_t *model, const Observer *stop, Err *err)
-{
-    size_t rows[1 + OBJECTIVES_MAX], n_cases;
-    const size_t n_var = run->schema.n_var, n = named_rows(run, rows);
-    Ladder before = {0}, now;
-    ModelCase *cases;
-    double *X;
-    json_t *designs = json_array(), *more = json_object();
     read_ladder(model, &before);
     now = before;
     TRY_ROOM(X, n * n_var + 1, "designs", err);
