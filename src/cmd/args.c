@@ -1,6 +1,5 @@
 #include "cmd/args.h"
 
-#include "base/linalg.h"
 #include "cmd/outputs.h"
 #include "store/folder.h"
 #include "settings/settings.h"

@@ -7,7 +7,6 @@
 #include "cmd/designs.h"
 #include "cmd/show.h"
 #include "report/panels.h"
-#include "report/pictures.h"
 #include "settings/settings.h"
 #include "scene/neighbour.h"
 

@@ -11,7 +11,6 @@
 #include "motion/motion_scale.h"
 #include "motion/suite.h"
 #include "motion/motion.h"
-#include "report/report_json.h"
 #include "scene/frame.h"
 #include "settings/settings.h"
 #include "store/tables.h"

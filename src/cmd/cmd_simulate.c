@@ -4,7 +4,6 @@
 #include "cmd/asked.h"
 #include "cmd/commands.h"
 #include "cmd/designs.h"
-#include "cmd/outputs.h"
 #include "cmd/show.h"
 #include "cmd/time_files.h"
 #include "analysis/estimate.h"

@@ -1,9 +1,6 @@
 #include "cmd/show.h"
 
 #include "analysis/estimate.h"
-#include "base/visible.h"
-#include "base/figure.h"
-#include "base/hypervolume.h"
 #include "base/text.h"
 #include "motion/suite.h"
 #include "report/report_json.h"
