@@ -30,11 +30,11 @@ function shapeFigures(host, d, isBeside = false) {
 
 // The largest force on every floor by side, and what the storeys of the core bear.
 function forceFigures(part, d) {
-  const { contact_force_n: sides, core_storey_stress_pa: stress, core_buckling_pa: buckling } = d.with_core, floors = d.gap_m.length;
+  const { contact_force_n: sides, core_storey_stress_pa: stress, core_buckling_pa: buckling } = d.with_core;
   if (!sides) return;
   const host = gridOf(part, 2);
-  const rows = sides.flatMap((side, s) => side.map((v, j) => ({ v: v / 1e6, from: j + (s ? 1 : 0.64), to: j + (s ? 1.36 : 1), colour: s ? SKY : BLUE, title: `floor ${j + 1}, moving ${s ? "left" : "right"}: ${show(v / 1e6)} MN` })));
-  figure(host, "Contact forces", "The largest on every floor, by the side that it reaches.", (width) => barChart(width, 340, rows, floors, "largest contact force [MN]"), legend([["floor moves right (u > v)", BLUE], ["floor moves left", SKY]]));
+  const rows = sides.flatMap((side, s) => side.map((v, j) => ({ v: v / 1e6, from: j + 0.64 + 0.36 * s, to: j + 1 + 0.36 * s, colour: s ? SKY : BLUE, title: `floor ${j + 1}, moving ${s ? "left" : "right"}: ${show(v / 1e6)} MN` })));
+  if (d.with_core.contact_force_max_n) figure(host, "Contact forces", "The largest on every floor, by the side that it reaches.", (width) => barChart(width, 340, rows, d.gap_m.length, "largest contact force [MN]"), legend([["floor moves right (u > v)", BLUE], ["floor moves left", SKY]]));
   if (!stress) return;
   const mega = (values) => values.map((v) => v / 1e6), lines = [{ name: "stress", values: mega(stress), colour: BLUE, thick: 2 }];
   if (buckling) lines.push({ name: "stress at which the bare wall buckles", values: mega(buckling), colour: VERMILLION, thick: 2, dash: "5 4" });
