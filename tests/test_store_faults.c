@@ -274,7 +274,7 @@ static Status work(RunStore *store, const Settings *s, const Schema *schema, siz
     TRY(store_session(store, "a test", 1, 0, why));
     for (size_t g = h ? h->n_generations : 0; g < n_generations; g++)
         TRY(generation(store, g, why));
-    TRY(store_read(store, &now, why));
+    TRY(store_read(store, RUN_WHOLE, &now, why));
     const long tried = now.tried_to_polish;
     run_free(&now);
     if (n_generations == N_GENERATIONS && tried < 1)

@@ -108,20 +108,13 @@ static void say_front(Document *d, const Run *run, const StudySummary *summary)
 static void say_clipped(Document *d, const Run *run)
 {
     size_t c = 0;
-    double least = 1, most = 0;
-    for (; c < run->schema.n_extra && run->schema.order.n == 0 && !(least == 0 && most > 0); c++) {
-        least = most = 0;
-        for (size_t i = 0; i < run->table.n; i++)
-            if (run->table.row[i].outcome == OUTCOME_OK) {
-                least = fmin(least, run->table.row[i].extra[c]);
-                most = fmax(most, run->table.row[i].extra[c]);
-            }
-    }
-    if (least == 0 && most > 0)
+    while (c < run->schema.n_extra && !(run->least[c] == 0 && run->most[c] > 0))
+        c++;
+    if (run->schema.order.n == 0 && c < run->schema.n_extra)
         document_say(d,
                      "%s is never below 0: the search learns more from values that also say how far a limit is, "
                      "stress / allowed - 1 and not max(0, ...)",
-                     schema_extra(&run->schema, c - 1)->name);
+                     schema_extra(&run->schema, c)->name);
 }
 
 static void say_run(Document *d, const Run *run, const StudySummary *sum)

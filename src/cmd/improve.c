@@ -12,7 +12,7 @@ Status improve_run(const Args *args, Status (*work)(const Args *args, Improve *m
     const char *word = args_value(args, "--design");
     Status status = run_wanted(args->operand, err);
     THEN(status, store_open(&m.store, args->operand, 0, err));
-    THEN(status, store_read(m.store, &m.run, err));
+    THEN(status, store_read(m.store, RUN_WHOLE, &m.run, err));
     THEN(status, design_of_run(&m.run, word ? word : "knee", &m.row, NULL, err));
     THEN(status, args_moved(args, &moved, err));
     THEN(status, record_paths_find(m.run.settings, m.run.provenance, &moved, err));

@@ -26,6 +26,11 @@ typedef struct Settings Settings;
 
 enum { NEVER = -1 };
 
+/* What is read of a run. HEAD: no rows: no table and no front, but the marks of it. FRONT: the rows that may be on the
+ * front (with finer values all that ever were), that failed, and that are from outside the search; all of a run that is
+ * noisy or has no front. Whatever is read, each row is checked and counted. */
+typedef enum { RUN_HEAD, RUN_FRONT, RUN_WHOLE } RunParts;
+
 /* Place of an evaluation on the front. */
 typedef struct {
     int entered, left; /* NEVER */
@@ -64,7 +69,8 @@ typedef struct Run {
     char *provenance; /* JSON */
     Settings *settings;
     Schema schema;
-    size_t n_front, n_failed, n_repeats, n_generations, n_sessions;
+    size_t n_front, n_failed, n_repeats, n_generations, n_sessions; /* also of rows that are not kept */
+    double least[EXTRA_MAX], most[EXTRA_MAX]; /* of the further measures of all that succeeded, and 0 */
     size_t n_finished;     /* evaluations of the search whose generation is finished: the first rows */
     EvaluationTable table; /* f: of this very evaluation; sd, replicates: of the design */
     EvaluationTable finer; /* designs as they are with more steps: the rows of `table` have these numbers, and err */

@@ -16,6 +16,8 @@
 typedef struct {
     Run *run;
     Database *d;
+    RunParts parts;
+    size_t n, n_of_search;    /* rows that have passed */
     EvaluationTable polished; /* rows that go behind those of the search */
 } Loading;
 
@@ -107,35 +109,56 @@ static Status load_head(Loading *l, Err *err)
 
 /* -- evaluations --------------------------------------------------------------------------------------------------- */
 
-/* The finished ones have the ids 1, 2, ... but for polished ones, without a gap. */
+static int by_id(const void *id, const void *mark)
+{
+    const long other = ((const RunMark *)mark)->id;
+    return (*(const long *)id > other) - (*(const long *)id < other);
+}
+
+/* When a design was on the front of the search. */
+static RunMark mark_of(const Run *run, long id)
+{
+    const RunMark *mark = run->n_marks > 0 ? bsearch(&id, run->mark, run->n_marks, sizeof *run->mark, by_id) : NULL;
+    return mark ? *mark : (RunMark){id, NEVER, NEVER};
+}
+
+static int has_succeeded(const Run *run, const Evaluation *e)
+{
+    return e->outcome == OUTCOME_OK && all_finite(run->schema.n_obj, e->f);
+}
+
+/* Every row is checked and counted as it passes: the finished ones have the ids 1, 2, ... but for polished ones,
+ * without a gap. */
 static Status take_row(const Evaluation *e, void *user, Err *err)
 {
     Loading *l = user;
     Run *run = l->run;
-    const long expected = (run->table.n + l->polished.n) + 1;
-    if (kind_is_outside(e->kind))
-        return evaluation_table_append(&l->polished, e, err);
-    return run->table.n >= run->n_finished || e->id == expected
-               ? evaluation_table_append(&run->table, e, err)
-               : database_damaged(l->d, err, "evaluation %ld is missing", expected);
+    const RunMark mark = mark_of(run, e->id);
+    const int is_outside = kind_is_outside(e->kind), ok = has_succeeded(run, e);
+    const long expected = (long)++l->n;
+    if (!is_outside && ++l->n_of_search <= run->n_finished && e->id != expected)
+        return database_damaged(l->d, err, "evaluation %ld is missing", expected);
+    run->n_failed += !ok;
+    run->n_repeats += e->kind == KIND_REPEAT;
+    for (size_t i = 0; i < run->schema.n_extra && ok; i++) {
+        run->least[i] = fmin(run->least[i], e->extra[i]);
+        run->most[i] = fmax(run->most[i], e->extra[i]);
+    }
+    const int may_be_on_it = mark.entered != NEVER && (mark.left == NEVER || run->finer.n > 0);
+    return l->parts == RUN_WHOLE || is_outside || !ok || may_be_on_it
+               ? evaluation_table_append(is_outside ? &l->polished : &run->table, e, err)
+               : STATUS_OK;
 }
 
 /* When a design was on the front, whether it succeeded, of how many simulations it is. */
 static Status make_places(Run *run, Err *err)
 {
     TRY_ROOM(run->place, run->table.n + 1, "evaluations", err);
-    for (size_t i = 0, m = 0; i < run->table.n; i++) {
+    for (size_t i = 0; i < run->table.n; i++) {
         Evaluation *e = &run->table.row[i];
-        RunPlace *place = &run->place[i];
-        while (m < run->n_marks && run->mark[m].id < e->id && !kind_is_outside(e->kind))
-            m++;
-        const int is_marked = m < run->n_marks && run->mark[m].id == e->id;
-        *place = (RunPlace){.entered = is_marked ? run->mark[m].entered : NEVER,
-                            .left = is_marked ? run->mark[m].left : NEVER};
-        place->ok = e->outcome == OUTCOME_OK && all_finite(run->schema.n_obj, e->f);
-        place->on_front = place->ok && place->entered != NEVER && place->left == NEVER;
-        run->n_failed += !place->ok;
-        run->n_repeats += e->kind == KIND_REPEAT;
+        const RunMark mark = mark_of(run, e->id);
+        const int ok = has_succeeded(run, e);
+        run->place[i] = (RunPlace){mark.entered, mark.left, ok, ok && mark.entered != NEVER && mark.left == NEVER};
         if (e->kind != KIND_REPEAT && !kind_is_outside(e->kind))
             e->replicates = e->kind == KIND_SCREENED ? 1 : (int)run->settings->sim.replicates;
     }
@@ -191,8 +214,6 @@ static Status join_finer(Loading *l, Err *err)
 {
     Run *run = l->run;
     const Schema *s = &run->schema;
-    run->finer = evaluation_table(0, s->n_obj, s->n_extra + s->n_obj + s->n_extra);
-    TRY(rows_each(l->d, ROWS_FINER, s, "1", take_finer, run, err));
     for (size_t i = 0; i < run->finer.n; i++) {
         Evaluation *better = &run->finer.row[i];
         const size_t row = run_find(run, better->id);
@@ -211,17 +232,21 @@ static Status join_finer(Loading *l, Err *err)
     return STATUS_OK;
 }
 
-/* All evaluations: those of the search in the order of their ids, then the polished ones. */
+/* Evaluations: those of the search in the order of their ids, then the polished ones. Means need all. */
 static Status load_rows(Loading *l, Err *err)
 {
     Run *run = l->run;
     const Schema *s = &run->schema;
+    if (s->is_noisy)
+        l->parts = RUN_WHOLE;
+    run->finer = evaluation_table(0, s->n_obj, s->n_extra + s->n_obj + s->n_extra);
+    TRY(rows_each(l->d, ROWS_FINER, s, "1", take_finer, run, err));
     run->table = evaluation_table(s->n_var, s->n_obj, s->n_extra);
     run->table.n_sd = s->has_spread ? s->n_obj : 0;
     l->polished = run->table;
     TRY(rows_each(l->d, ROWS_EVALUATION, s, "1", take_row, l, err));
-    if (run->table.n < run->n_finished)
-        return database_damaged(l->d, err, "evaluation %zu is missing", run->table.n + l->polished.n + 1);
+    if (l->n_of_search < run->n_finished)
+        return database_damaged(l->d, err, "evaluation %zu is missing", l->n + 1);
     for (size_t i = 0; i < l->polished.n; i++)
         TRY(evaluation_table_append(&run->table, &l->polished.row[i], err));
     const size_t n = run->table.n;
@@ -244,19 +269,20 @@ static Status load_rows(Loading *l, Err *err)
 
 Status run_load(Run *run, Database *d, const char *folder, RunParts parts, Err *err)
 {
-    Loading l = {.run = run, .d = d};
+    Loading l = {.run = run, .d = d, .parts = parts};
     memset(run, 0, sizeof *run);
     TRY(database_do(d, err, "BEGIN", "")); /* one state of a run that is worked on */
     Status status = load_head(&l, err);
-    if (parts == RUN_WHOLE)
+    if (parts != RUN_HEAD)
         THEN(status, load_rows(&l, err));
     evaluation_table_free(&l.polished);
     const Status end = database_do(d, status == STATUS_OK ? err : NULL, "COMMIT", "");
     THEN(status, end);
     snprintf(run->folder, sizeof run->folder, "%s", folder);
-    if (status != STATUS_OK)
+    const int is_empty = parts == RUN_FRONT && run->n_front == 0; /* then what comes nearest is asked for */
+    if (status != STATUS_OK || is_empty)
         run_free(run);
-    return status;
+    return status == STATUS_OK && is_empty ? run_load(run, d, folder, RUN_WHOLE, err) : status;
 }
 
 int run_is_there(const char *folder)

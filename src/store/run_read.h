@@ -16,6 +16,4 @@ int runs_each(const char *folder, RunFolderFn take, void *user);
 
 Status run_read(Run *run, const char *folder, Err *err);
 
-/* RUN_HEAD: all but the rows: no table, no front, but the marks of it. */
-typedef enum { RUN_HEAD, RUN_WHOLE } RunParts;
 Status run_load(Run *run, Database *d, const char *folder, RunParts parts, Err *err);

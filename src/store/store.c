@@ -624,15 +624,15 @@ Status store_event(RunStore *store, json_t *event, Err *err)
     return status;
 }
 
-Status store_read(RunStore *store, Run *run, Err *err)
+Status store_read(RunStore *store, RunParts parts, Run *run, Err *err)
 {
     TRY(store_flush(store, err));
-    return folder_advise(store_folder(store), run_load(run, store->db, store_folder(store), RUN_WHOLE, err), err);
+    return folder_advise(store_folder(store), run_load(run, store->db, store_folder(store), parts, err), err);
 }
 
 Status store_write_front(RunStore *store, Run *run, Err *err)
 {
-    TRY(store_read(store, run, err));
+    TRY(store_read(store, RUN_FRONT, run, err));
     const Status status = export_front(run, err);
     if (status != STATUS_OK)
         run_free(run);

@@ -49,8 +49,8 @@ const EvaluationTable *store_unfinished(const RunStore *store);
 /* The finished evaluations of the search in their order; for SearchStart, of whose `each` the store is the user. */
 Status store_each_finished(EvaluationFn take, void *search, void *store, Err *err);
 
-/* All of the run as it is now, for run_free, behind store_flush: the search is over, or has not begun. */
-Status store_read(RunStore *store, Run *run, Err *err);
+/* The run as it is now, for run_free, behind store_flush: the search is over, or has not begun. */
+Status store_read(RunStore *store, RunParts parts, Run *run, Err *err);
 
 /* A run in which nothing was simulated is removed: the next one begins with whatever settings. */
 Status store_forget_empty(RunStore *store, Err *err);
@@ -92,10 +92,10 @@ Status store_polished(RunStore *store, const Evaluation *better, size_t n_tried,
  * until the search goes on, which keeps its own. */
 Status store_finer(RunStore *store, size_t n, const Evaluation better[], Err *err);
 
-/* store_read, and front.csv written from it. */
+/* store_read of the front, and front.csv written from it. */
 Status store_write_front(RunStore *store, Run *run, Err *err);
 
-/* Why the session ends. is_final: there is nothing to be resumed. run (NULL: not wanted) becomes the run as it is then,
- * for run_free; front.csv is written. The store is released in any case. */
+/* Why the session ends. is_final: there is nothing to be resumed. run (NULL: not wanted) becomes the run as it is then
+ * (RUN_FRONT), for run_free; front.csv is written. The store is released in any case. */
 Status store_close(RunStore *store, const char *stopped, int is_final, double session, Run *run, Err *err);
 void store_free(RunStore *store); /* NULL is fine */

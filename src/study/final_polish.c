@@ -20,12 +20,12 @@ typedef struct {
 
 /* status: of polishing the design, n_before have been tried before. One that cannot be polished, one that fails with
  * more replicates say, is logged and left out. */
-static Status store_polish(const Polishing *w, size_t row, size_t n_before, const Improved *polished, Status status,
+static Status store_polish(const Polishing *w, long id, size_t n_before, const Improved *polished, Status status,
                            Err *err)
 {
     const Evaluation *better = NULL;
     if (status == STATUS_BAD_DATA) {
-        TRY(store_event(w->store, json_of("event=%s row=%ld why=%s", "not polished", row + 1, err->text), err));
+        TRY(store_event(w->store, json_of("event=%s row=%ld why=%s", "not polished", id, err->text), err));
     } else {
         TRY(status);
         better = polish_counts(polished) ? &polished->designs.row[POLISH_END] : NULL;
@@ -63,7 +63,7 @@ static Status polish_chosen(const Polishing *w, const Run *run, size_t n_wanted,
         const Status status = improve_design(&own, rows[i], config, polish_design, &polished, &why);
 #pragma omp ordered
         if (all == STATUS_OK) {
-            all = store_polish(w, rows[i], i, &polished, status, &why);
+            all = store_polish(w, run->table.row[rows[i]].id, i, &polished, status, &why);
             if (all != STATUS_OK)
                 *err = why;
         }
@@ -88,7 +88,7 @@ Status final_polish(RunStore *store, const FinalPolish *p, FinalPolished *out, E
     }
     Run run;
     const double begun = clock_seconds();
-    TRY(store_read(store, &run, err));
+    TRY(store_read(store, RUN_FRONT, &run, err));
     run_drop_polished(&run);
     const Status status = polish_chosen(&(Polishing){store, p, out}, &run, n, &config, err);
     out->cost.seconds += clock_seconds() - begun;

@@ -223,7 +223,7 @@ Status named_simulate(RunStore *store, const Settings *used, const Problem *prob
     w->problem.order = NULL;
     Status status = queue_open(&w->queue, &w->problem, err);
     while (status == STATUS_OK && w->n > 0) {
-        status = store_read(w->store, &w->run, err);
+        status = store_read(w->store, RUN_FRONT, &w->run, err);
         if (status != STATUS_OK)
             break;
 

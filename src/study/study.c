@@ -289,7 +289,7 @@ static Status resume(Study *study, Err *err)
     study->evaluations_before = sum->n_before;
     if (settings_screens(run->settings)) { /* designs are shares of an evaluation */
         Run all;
-        TRY(store_read(study->store, &all, err));
+        TRY(store_read(study->store, RUN_WHOLE, &all, err));
         study->evaluations_before = run_evaluations(&all, 0);
         run_free(&all);
     }
@@ -445,7 +445,7 @@ int study_finished(RunStore *store, StudySummary *summary, Run *run)
     *summary = (StudySummary){0};
     if (!store_run(store) || !came_to_its_end(store_run(store), &summary->stopped))
         return 0;
-    if (store_read(store, run, &(Err){0}) != STATUS_OK)
+    if (store_read(store, RUN_FRONT, run, &(Err){0}) != STATUS_OK)
         return 0;
     snprintf(summary->folder, sizeof summary->folder, "%s", store_folder(store));
     summary->max_evals = run->settings->search.max_evals;

@@ -118,7 +118,7 @@ static Status confirm(const Run *run, json_t *model, const Observer *stop, Err *
 Status study_model_confirm(RunStore *store, const Observer *stop, Err *err)
 {
     Run run;
-    TRY(store_read(store, &run, err));
+    TRY(store_read(store, RUN_FRONT, &run, err));
     json_t *all = json_loads(run.provenance, 0, NULL), *model = json_object_get(all, "model");
     Status status = STATUS_OK;
     if (model && run.n_front > 0) {
