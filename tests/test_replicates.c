@@ -137,8 +137,8 @@ TEST(a_design_asked_for_again_gets_further_replicates)
     CHECK_OK(queue_next(q, &done, &err), &err);
     memcpy(first, X, sizeof first);
     memcpy(fifth, X, sizeof fifth);
-    replicate_design((uint32_t)s.search.seed, 0, 0.01, 20, first);
-    replicate_design((uint32_t)s.search.seed, 4, 0.01, 20, fifth);
+    replicate_design((uint32_t)s.search.seed, 0, 0, 0.01, 20, first);
+    replicate_design((uint32_t)s.search.seed, 0, 4, 0.01, 20, fifth);
     assert_memory_equal(first, X, sizeof first);
     assert_memory_not_equal(fifth, X, sizeof fifth);
     CHECK_OK(tower_simulate(&p, 1, &(SimTask){.kind = SCENE_RIGID, .x = fifth}, &alone, &err), &err);
@@ -279,7 +279,7 @@ TEST(mean_plus_sd_is_that_of_the_single_simulations)
         SimResult r;
         const AsBuilt b = replicate_as_built((uint32_t)s.search.seed, k, &s.sim.uncertain);
         memcpy(x, X, sizeof x);
-        replicate_design((uint32_t)s.search.seed, k, 0.01, 20, x);
+        replicate_design((uint32_t)s.search.seed, 0, k, 0.01, 20, x);
         CHECK_OK(tower_open(&p, &single, TOWER_SINGLE, 1, &err), &err);
         run_as_built(&p, k ? &b : NULL, x, &r);
         v[k] = r.j3_g;

@@ -51,7 +51,7 @@ static double cost_of(const Choice *c, size_t row, const double weights[], const
         const double off = point ? (run_f(c->run, row)[k] - point[k]) / c->box.span[k] : 0;
         sum += weights ? weights[k] * run_scaled(c->run, &c->box, row, k) : isnan(off) ? 0 : off * off;
     }
-    return weights || point ? sum : run_distance2(c->run, &c->box, row);
+    return weights || point ? sum : run_distance2(c->run, &c->box, row, c->run->table.n);
 }
 
 /* -- what is chosen ------------------------------------------------------------------------------------------------ */

@@ -198,7 +198,7 @@ static Status show(const Args *args, const Run *run, const StudySummary *sum, Er
     Document d = {0};
     size_t rows[NEAREST_MAX];
     if (sum->n_front > 0) {
-        TRY(export_nearest(sum->folder, NULL, 0, NULL, err));
+        TRY(export_inside(run, EXPORT_NEAREST, 0, NULL, err));
         d.data = json_of_run(run, sum);
         say_run(&d, run, sum);
         if (!as_json)
@@ -209,7 +209,7 @@ static Status show(const Args *args, const Run *run, const StudySummary *sum, Er
     /* Nothing succeeded, or nothing keeps search.limits: then the designs that come nearest. */
     const size_t n = as_json ? 0 : run_nearest(run, rows);
     if (!as_json)
-        TRY(export_nearest(sum->folder, run, n, rows, err));
+        TRY(export_inside(run, EXPORT_NEAREST, n, rows, err));
     if (n == 0 || !run_has_limits(run))
         return run_why_empty(run, err);
     document_say(&d, "nearest: %s/nearest.csv", sum->folder);

@@ -89,7 +89,7 @@ enum { TASKS_MAX = 64 };
 /* Who does the tasks in the place of this process, which has a thread for each of several workers; where there is one,
  * the client does them itself while it waits. */
 typedef struct {
-    Status (*start)(void **self, Queue *queue, size_t *n_workers, Err *err);
+    Status (*start)(void **self, const Problem *p, size_t *n_workers, Err *err);
     void (*stop)(void *self);   /* none is under way any more */
     const Simulator *simulator; /* asked by two threads for each of n_workers, by one where that is 1 */
 } Executor;

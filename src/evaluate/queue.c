@@ -50,11 +50,6 @@ struct Queue {
     pthread_cond_t some, plenty, news; /* tasks wait; enough for those who take ahead; a design is finished */
 };
 
-const Problem *queue_problem(const Queue *q)
-{
-    return q->problem;
-}
-
 /* The arrays of a slot, in one store with it. */
 static void layout(void *slot, Carve *c)
 {
@@ -337,7 +332,7 @@ static Status start(Queue *q, Err *err)
     const Executor *e = q->problem->executor;
     q->n_first = q->problem->n_workers;
     if (e)
-        TRY(e->start(&q->executing, q, &q->n_first, err));
+        TRY(e->start(&q->executing, q->problem, &q->n_first, err));
     if (!e && q->n_first == 1)
         return STATUS_OK;
     const size_t n = e && q->n_first > 1 ? 2 * q->n_first : q->n_first;

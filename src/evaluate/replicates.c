@@ -9,28 +9,23 @@ enum { PARTS_MAX = TOWER_RECORDS_MAX * 1000 }; /* records and replicates that th
 /* Streams of the random numbers. */
 enum { OF_GAPS, OF_STRUCTURE, OF_LEFT_GAPS, OF_BOOTSTRAP };
 
-static void change_gaps(uint32_t seed, uint32_t stream, size_t k, double tolerance_m, size_t n_gaps, double x[])
+void replicate_design(uint32_t seed, int is_left, size_t k, double tolerance_m, size_t n_gaps, double x[])
 {
-    Random random = random_stream(seed, RANDOM_REPLICATE, stream, (uint32_t)k);
+    Random random = random_stream(seed, RANDOM_REPLICATE, is_left ? OF_LEFT_GAPS : OF_GAPS, (uint32_t)k);
     for (size_t j = 0; k > 0 && j < n_gaps; j++) {
         const double tiny = random_normal(&random), error = random_normal(&random);
         x[j] = fmax(x[j] * (1.0 + REPLICATE_CHANGE * tiny) + tolerance_m * error, 0.0);
     }
 }
 
-void replicate_design(uint32_t seed, size_t k, double tolerance_m, size_t n_gaps, double x[])
-{
-    change_gaps(seed, OF_GAPS, k, tolerance_m, n_gaps, x);
-}
-
 void replicate_gaps(uint32_t seed, size_t k, double tolerance_m, const DesignSpace *s, Design *d)
 {
     const size_t n = s->n_floors;
-    replicate_design(seed, k, tolerance_m, n, d->gap[0]);
+    replicate_design(seed, 0, k, tolerance_m, n, d->gap[0]);
     if (s->gap_sides == GAPS_BOTH)
         memcpy(d->gap[1], d->gap[0], n * sizeof *d->gap[0]);
     else
-        change_gaps(seed, OF_LEFT_GAPS, k, tolerance_m, n, d->gap[1]);
+        replicate_design(seed, 1, k, tolerance_m, n, d->gap[1]);
 }
 
 ReplicatePlan replicate_plan(const SimOptions *o, size_t n_records)

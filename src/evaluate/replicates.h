@@ -35,8 +35,8 @@ enum { TOWER_RECORDS_MAX = 64 }; /* of one design */
 /* Small against anything that could be built. */
 static const double REPLICATE_CHANGE = 1e-8;
 
-/* x becomes replicate k; its first n_gaps numbers are gaps [m], of which none gets negative. */
-void replicate_design(uint32_t seed, size_t k, double tolerance_m, size_t n_gaps, double x[]);
+/* x becomes replicate k; its first n_gaps numbers are gaps [m] of one side, of which none gets negative. */
+void replicate_design(uint32_t seed, int is_left, size_t k, double tolerance_m, size_t n_gaps, double x[]);
 
 /* Perturbs the gaps of a design. Both sides of a floor change alike where they are one variable, else separately. */
 void replicate_gaps(uint32_t seed, size_t k, double tolerance_m, const DesignSpace *s, Design *d);

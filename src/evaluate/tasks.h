@@ -5,8 +5,6 @@
 
 #include "evaluate/problem.h"
 
-const Problem *queue_problem(const Queue *q);
-
 /* Up to n_max tasks for a worker, and how many; 0: there is none, now (wait 0) or ever more (wait 1). */
 size_t queue_take(Queue *q, size_t worker, int wait, size_t n_max, Task tasks[]);
 

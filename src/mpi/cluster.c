@@ -17,18 +17,13 @@ void host_name(char host[HOST_MAX])
     gethostname(host, HOST_MAX - 1);
 }
 
-static int rank_of_this(void)
+/* The rank of this process, of n. */
+static int rank_of(int *n)
 {
     int rank;
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    MPI_Comm_size(MPI_COMM_WORLD, n);
     return rank;
-}
-
-static int n_ranks(void)
-{
-    int n;
-    MPI_Comm_size(MPI_COMM_WORLD, &n);
-    return n;
 }
 
 Status cluster_join(int *argc, char ***argv, const char version[CLUSTER_VERSION_MAX], ReopenFn reopen, int *serves,
@@ -38,15 +33,14 @@ Status cluster_join(int *argc, char ***argv, const char version[CLUSTER_VERSION_
     static const int SIGNALS[] = {SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGUSR2};
     Hello mine = {.arguments = HASH_SEED};
     Status status = STATUS_OK;
-    int level;
+    int level, n;
     MPI_Init_thread(argc, argv, MPI_THREAD_SERIALIZED, &level);
-    *serves = rank_of_this() > 0;
+    *serves = rank_of(&n) > 0;
     for (size_t i = 0; *serves && i < N_OF(SIGNALS); i++)
         signal(SIGNALS[i], SIG_IGN);
 
     /* 2. Every rank compares what all say of themselves, so that all come to one verdict, whose reason is rank 0's to
      * tell. */
-    const int n = n_ranks();
     Hello *all = calloc(n, sizeof *all);
     if (!all)
         MPI_Abort(MPI_COMM_WORLD, status_exit_code(STATUS_NO_MEMORY));
@@ -96,13 +90,13 @@ int message_receive(int from, int tag, Message *m)
  * failed, the whole job is aborted. */
 void cluster_leave(int exit_code)
 {
-    int is_over, is_whole = exit_code == 0;
+    int is_over, n, is_whole = exit_code == 0;
     MPI_Finalized(&is_over);
     if (is_over)
         return;
-    if (rank_of_this() == 0) {
-        int n_left = n_ranks() - 1;
-        for (int i = 1; i < n_ranks(); i++)
+    if (rank_of(&n) == 0) {
+        int n_left = n - 1;
+        for (int i = 1; i < n; i++)
             MPI_Send(NULL, 0, MPI_BYTE, i, TAG_OPEN, MPI_COMM_WORLD);
         for (const double give_up = clock_seconds() + LEAVE_S; n_left > 0 && clock_seconds() < give_up;) {
             Message m;
@@ -127,8 +121,8 @@ void cluster_disband(void)
 
 const Executor *cluster_executor(size_t *n)
 {
-    int is_over;
+    int is_over, n_ranks = 1;
     MPI_Finalized(&is_over);
-    *n = !is_over && rank_of_this() == 0 ? (size_t)n_ranks() - 1 : 0;
+    *n = !is_over && rank_of(&n_ranks) == 0 ? (size_t)n_ranks - 1 : 0;
     return *n > 0 ? &EXECUTOR_RANKS : NULL;
 }

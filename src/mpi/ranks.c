@@ -179,9 +179,8 @@ static void stop(void *self)
 }
 
 /* Let every rank open the problem, and learn how many workers each has. */
-static Status start(void **self, Queue *q, size_t *n_workers, Err *err)
+static Status start(void **self, const Problem *p, size_t *n_workers, Err *err)
 {
-    const Problem *p = queue_problem(q);
     size_t n;
     Ranks *r;
 

@@ -190,8 +190,7 @@ Status database_each(Database *d, const char *sql, DatabaseRowFn take, void *use
 static Status take_number(sqlite3_stmt *row, void *user, Err *err)
 {
     (void)err;
-    if (sqlite3_column_type(row, 0) != SQLITE_NULL)
-        *(double *)user = sqlite3_column_double(row, 0);
+    *(double *)user = sqlite3_column_double(row, 0); /* NULL: 0 */
     return STATUS_OK;
 }
 

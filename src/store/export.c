@@ -214,30 +214,17 @@ Status export_designs(FILE *f, const Run *run, ExportTable table, size_t n, cons
 
 /* -- files of the run's folder ------------------------------------------------------------------------------------- */
 
-/* A table in the folder of a run. */
-static Status write_inside(const char *folder, const Run *run, ExportTable table, size_t n, const size_t rows[],
-                           Err *err)
+Status export_inside(const Run *run, ExportTable table, size_t n, const size_t rows[], Err *err)
 {
     char path[PATH_MAX];
     Output o;
-    folder_path(folder, table == EXPORT_FRONT ? "front.csv" : "nearest.csv", path);
+    folder_path(run->folder, table == EXPORT_FRONT ? "front.csv" : "nearest.csv", path);
+    if (table == EXPORT_NEAREST && n == 0) {
+        unlink(path);
+        return STATUS_OK;
+    }
     TRY(output_open_inside(&o, path, err));
     return output_end(&o, export_designs(o.stream, run, table, n, rows, err), err);
-}
-
-Status export_front(const Run *run, Err *err)
-{
-    return write_inside(run->folder, run, EXPORT_FRONT, run->n_front, run->front, err);
-}
-
-Status export_nearest(const char *folder, const Run *run, size_t n, const size_t rows[], Err *err)
-{
-    char path[PATH_MAX];
-    if (n > 0)
-        return write_inside(folder, run, EXPORT_NEAREST, n, rows, err);
-    folder_path(folder, "nearest.csv", path);
-    unlink(path);
-    return STATUS_OK;
 }
 
 /* -- JSON ---------------------------------------------------------------------------------------------------------- */

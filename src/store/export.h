@@ -22,7 +22,6 @@ Status export_designs(FILE *f, const Run *run, ExportTable table, size_t n, cons
 /* Settings, columns, evaluations, unfinished ones too, and generations as one object. */
 Status export_json(FILE *f, const Run *run, Err *err);
 
-/* front.csv, nearest.csv in the run's folder; with n = 0 the latter is removed: a run that was resumed may have a front
- * now. */
-Status export_front(const Run *run, Err *err);
-Status export_nearest(const char *folder, const Run *run, size_t n, const size_t rows[], Err *err);
+/* front.csv or nearest.csv in the run's folder; with n = 0 the latter is removed: a run that was resumed may have a
+ * front now. */
+Status export_inside(const Run *run, ExportTable table, size_t n, const size_t rows[], Err *err);

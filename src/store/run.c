@@ -218,11 +218,11 @@ double run_scaled(const Run *run, const FrontBox *box, size_t row, size_t object
     return (minimised(run, row, objective) - box->ideal[objective]) / box->span[objective];
 }
 
-double run_distance2(const Run *run, const FrontBox *box, size_t row)
+double run_distance2(const Run *run, const FrontBox *box, size_t row, size_t other)
 {
     double sum = 0.0;
     for (size_t k = 0; k < run->schema.n_obj; k++) {
-        const double d = run_scaled(run, box, row, k);
+        const double d = run_scaled(run, box, row, k) - (other < run->table.n ? run_scaled(run, box, other, k) : 0.0);
         sum += d * d;
     }
     return sum;
@@ -230,12 +230,9 @@ double run_distance2(const Run *run, const FrontBox *box, size_t row)
 
 size_t run_knee(const Run *run)
 {
-    const FrontBox box = run_box(run);
-    size_t knee = run->front[0];
-    for (size_t i = 1; i < run->n_front; i++)
-        if (run_distance2(run, &box, run->front[i]) < run_distance2(run, &box, knee))
-            knee = run->front[i];
-    return knee;
+    size_t knee[1] = {run->front[0]};
+    run_spread_out(run, 1, 1, knee);
+    return *knee;
 }
 
 size_t run_spread_out(const Run *run, size_t n, int with_polished, size_t rows[])
@@ -253,15 +250,9 @@ size_t run_spread_out(const Run *run, size_t n, int with_polished, size_t rows[]
                 continue;
 
             /* The square of the scaled distance to the nearest of those chosen; of the first to the ideal point. */
-            double merit = chosen == 0 ? -run_distance2(run, &box, row) : DBL_MAX;
-            for (size_t c = 0; c < chosen; c++) {
-                double sum = 0.0;
-                for (size_t k = 0; k < run->schema.n_obj; k++) {
-                    const double d = run_scaled(run, &box, row, k) - run_scaled(run, &box, rows[c], k);
-                    sum += d * d;
-                }
-                merit = fmin(merit, sum);
-            }
+            double merit = chosen == 0 ? -run_distance2(run, &box, row, run->table.n) : DBL_MAX;
+            for (size_t c = 0; c < chosen; c++)
+                merit = fmin(merit, run_distance2(run, &box, row, rows[c]));
             if (merit > most) {
                 most = merit;
                 found = row;

@@ -142,8 +142,8 @@ typedef struct {
 FrontBox run_box(const Run *run);
 double run_scaled(const Run *run, const FrontBox *box, size_t row, size_t objective);
 
-/* Square of the scaled distance to the ideal point. */
-double run_distance2(const Run *run, const FrontBox *box, size_t row);
+/* Square of the scaled distance to another design; run->table.n: to the ideal point. */
+double run_distance2(const Run *run, const FrontBox *box, size_t row, size_t other);
 size_t run_knee(const Run *run);
 
 /* At most n designs that are spread over the front, the knee first, then again and again the one farthest from those

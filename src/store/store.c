@@ -18,13 +18,12 @@
 
 struct RunStore {
     Folder folder;
-    const Schema *schema;
+    const Schema *schema; /* of the session, or before it of the run as it is stored */
     Database *db;
     RowColumns columns[N_ROW_TABLES]; /* of its tables; without places: not asked for yet */
-    Run run;                          /* that the folder held when it was opened */
-    int has_run;
-    EvaluationTable unfinished; /* of it */
-    long *polished;             /* (n_polished) ids of it, ascending */
+    Run run;                          /* that the folder held when it was opened; {0}: none */
+    EvaluationTable unfinished;       /* of it */
+    long *polished;                   /* (n_polished) ids of it, ascending */
     size_t n_polished;
 
     size_t n_stored;             /* evaluations of the search */
@@ -56,7 +55,7 @@ const char *store_folder(const RunStore *store)
 
 const Run *store_run(const RunStore *store)
 {
-    return store->has_run ? &store->run : NULL;
+    return store->run.settings ? &store->run : NULL;
 }
 
 const EvaluationTable *store_unfinished(const RunStore *store)
@@ -122,10 +121,9 @@ static Status take_open_row(const Evaluation *e, void *user, Err *err)
 static Status load_run(RunStore *store, Err *err)
 {
     Run *run = &store->run;
-    const Schema *s = &run->schema;
+    const Schema *s = store->schema = &run->schema;
     TRY(open_database(store, err));
     TRY(run_load(run, store->db, store_folder(store), RUN_HEAD, err));
-    store->has_run = 1;
     database_grow(store->db);
     store->unfinished = evaluation_table(s->n_var, s->n_obj, s->n_extra);
     store->n_known = store->n_stored = run->n_finished;
@@ -148,24 +146,21 @@ Status store_open(RunStore **out, const char *folder, int fresh, Err *err)
     *out = NULL;
     RunStore *store;
     TRY_ROOM(store, 1, "a run", err);
-    pthread_condattr_t clock;
-    pthread_condattr_init(&clock);
-    pthread_condattr_setclock(&clock, CLOCK_MONOTONIC);
-    pthread_cond_init(&store->news, &clock);
+    pthread_cond_init(&store->news, NULL);
     pthread_mutex_init(&store->writing, NULL);
     pthread_mutex_init(&store->lock, NULL);
-    pthread_condattr_destroy(&clock);
     Status status = folder_take(&store->folder, folder, fresh, err);
     if (status == STATUS_OK && folder_has(store_folder(store), "run.sqlite"))
         status = folder_advise(store_folder(store), load_run(store, err), err);
     /* Nothing tells a journal that was lost from one that was never there but the number beside it. */
     if (status == STATUS_OK && store->folder.n_stored > store->n_stored)
-        status = fail(err, STATUS_IO,
-                      "%s: %zu evaluations were stored, as its file `lock` says; run.sqlite %s%zu: %s is missing. Put "
-                      "it back; to "
-                      "go on without those evaluations remove `lock`; for another run: --new",
-                      store_folder(store), store->folder.n_stored, store->has_run ? "has " : "is not there, ",
-                      store->n_stored, store->has_run ? "its journal run.sqlite-wal, or part of it," : "the database");
+        status =
+            fail(err, STATUS_IO,
+                 "%s: %zu evaluations were stored, as its file `lock` says; run.sqlite %s%zu: %s is missing. Put "
+                 "it back; to "
+                 "go on without those evaluations remove `lock`; for another run: --new",
+                 store_folder(store), store->folder.n_stored, store->run.settings ? "has " : "is not there, ",
+                 store->n_stored, store->run.settings ? "its journal run.sqlite-wal, or part of it," : "the database");
     if (status == STATUS_OK)
         *out = store;
     else
@@ -177,12 +172,11 @@ Status store_open(RunStore **out, const char *folder, int fresh, Err *err)
 Status store_forget_empty(RunStore *store, Err *err)
 {
     char path[PATH_MAX];
-    if (!store->has_run || store->n_stored > 0 || store->n_polished > 0 || store->run.n_generations > 0)
+    if (!store->run.settings || store->n_stored > 0 || store->n_polished > 0 || store->run.n_generations > 0)
         return STATUS_OK;
     database_close(store->db);
     run_free(&store->run);
     store->db = NULL;
-    store->has_run = 0;
     folder_path(store_folder(store), "run.sqlite", path);
     database_remove_journal(path);
     return unlink(path) == 0 || errno == ENOENT ? STATUS_OK : fail_errno(err, path, "cannot be removed");
@@ -272,18 +266,12 @@ static Status commit(RunStore *store, Status status, Err *err)
     return STATUS_OK;
 }
 
-/* Of the session, or where none was begun, of the run as it is stored. */
-static const Schema *schema_of_store(const RunStore *store)
-{
-    return store->schema ? store->schema : &store->run.schema;
-}
-
 static Status insert_row(RunStore *store, RunTable table, const Evaluation *e, Err *err)
 {
     RowColumns *columns = &store->columns[table];
     if (!columns->place)
-        TRY(tables_columns(store->db, table, schema_of_store(store), columns, err));
-    return rows_insert(store->db, columns, schema_of_store(store), e, err);
+        TRY(tables_columns(store->db, table, store->schema, columns, err));
+    return rows_insert(store->db, columns, store->schema, e, err);
 }
 
 static Status insert(RunStore *store, const Evaluation *e, Err *err)
@@ -342,7 +330,7 @@ static void *commit_in_time(void *user)
         if (store->status != STATUS_OK || (!store->is_open && store->waiting.n == 0)) {
             pthread_cond_wait(&store->news, &store->lock);
         } else if (clock_seconds() < due) {
-            pthread_cond_timedwait(&store->news, &store->lock, &at);
+            pthread_cond_clockwait(&store->news, &store->lock, CLOCK_MONOTONIC, &at);
         } else {
             pthread_mutex_unlock(&store->lock);
             pthread_mutex_lock(&store->writing);
@@ -579,30 +567,27 @@ static Status put_generation(RunStore *store, const SearchView *v, double second
 
 /* All of it or nothing: half a generation beside the state of the one before could not be resumed. Simulations that
  * wait for the next commit are not lost with it, unless SQLite has rolled back more than this generation. */
-static Status write_generation(RunStore *store, const SearchView *v, const SessionTimes *s, Err *err)
-{
-    TRY(insert_waiting(store, err));
-    TRY(begin(store, err));
-    TRY(database_do(store->db, err, "SAVEPOINT generation", ""));
-    store->session.seconds = s->session;
-    store->session.search_s = s->search;
-    store->session.waited_s = s->waiting;
-    store->session.surrogate_s = s->choosing;
-    Status status = put_generation(store, v, s->run, err);
-    THEN(status, database_do(store->db, err, "RELEASE generation", ""));
-    if (status != STATUS_OK)
-        return database_in_transaction(store->db) &&
-                       database_do(store->db, NULL, "ROLLBACK TO generation; RELEASE generation", "") == STATUS_OK
-                   ? status
-                   : lose(store, status);
-    return v->reason != STOP_NONE ? flush_and_look(store, err) : STATUS_OK;
-}
-
 Status store_generation(RunStore *store, const SearchView *v, const SessionTimes *s, Err *err)
 {
     TRY(measure_front(store, v->all, v->reason != STOP_NONE, err));
     pthread_mutex_lock(&store->writing);
-    const Status status = write_generation(store, v, s, err);
+    store->session.seconds = s->session;
+    store->session.search_s = s->search;
+    store->session.waited_s = s->waiting;
+    store->session.surrogate_s = s->choosing;
+    Status status = insert_waiting(store, err);
+    THEN(status, begin(store, err));
+    THEN(status, database_do(store->db, err, "SAVEPOINT generation", ""));
+    if (status == STATUS_OK) {
+        status = put_generation(store, v, s->run, err);
+        THEN(status, database_do(store->db, err, "RELEASE generation", ""));
+        if (status != STATUS_OK &&
+            (!database_in_transaction(store->db) ||
+             database_do(store->db, NULL, "ROLLBACK TO generation; RELEASE generation", "") != STATUS_OK))
+            lose(store, status);
+    }
+    if (v->reason != STOP_NONE)
+        THEN(status, flush_and_look(store, err));
     pthread_mutex_unlock(&store->writing);
     return status;
 }
@@ -633,7 +618,7 @@ Status store_read(RunStore *store, RunParts parts, Run *run, Err *err)
 Status store_write_front(RunStore *store, Run *run, Err *err)
 {
     TRY(store_read(store, RUN_FRONT, run, err));
-    const Status status = export_front(run, err);
+    const Status status = export_inside(run, EXPORT_FRONT, run->n_front, run->front, err);
     if (status != STATUS_OK)
         run_free(run);
     return status;

@@ -1,5 +1,7 @@
 #include "study/search_loop.h"
 
+#include <malloc.h>
+
 #include "base/clock.h"
 #include "evaluate/queue.h"
 
@@ -75,5 +77,6 @@ Status search_run(const Problem *problem, const SearchConfig *config, const Sear
     THEN(status, run(&l, observe, user, reason, err));
     queue_close(l.queue);
     search_free(l.search);
+    malloc_trim(0); /* its small pieces, which the C library would keep, make room for the run that is read next */
     return status;
 }
