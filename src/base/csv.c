@@ -1,8 +1,9 @@
 #include "base/csv.h"
 
-#include <ctype.h>
 #include <errno.h>
 #include <sys/stat.h>
+
+#include "base/text.h"
 
 /* ---- files ------------------------------------------------------------------------------------------------------- */
 
@@ -61,9 +62,9 @@ Status lines_open(Lines *l, const char *path, const char *text, size_t length, E
 
 static void strip(const char **from, const char **to)
 {
-    while (*to > *from && isspace((unsigned char)(*to)[-1]))
+    while (*to > *from && is_blank((*to)[-1]))
         --*to;
-    while (*from < *to && isspace((unsigned char)**from))
+    while (*from < *to && is_blank(**from))
         ++*from;
 }
 
@@ -83,7 +84,7 @@ int lines_next(Lines *l)
 Cell cell_next(const char **p, const char *end, const char *marks)
 {
     const int blanks = *marks == ' ';
-    while (blanks && *p < end && isspace((unsigned char)**p))
+    while (blanks && *p < end && is_blank(**p))
         ++*p;
     Cell c = {.from = *p, .to = *p};
     if (*p >= end) {
@@ -92,13 +93,13 @@ Cell cell_next(const char **p, const char *end, const char *marks)
     }
     for (int opens = *c.from == '"', quoted = 0; c.to < end; c.to++) {
         quoted ^= opens && *c.to == '"';
-        if (!quoted && (strchr(marks, *c.to) || (blanks && isspace((unsigned char)*c.to))))
+        if (!quoted && (strchr(marks, *c.to) || (blanks && is_blank(*c.to))))
             break;
     }
     /* Behind the cell any blanks and at most one of the other marks; beyond the end where nothing is left. */
     *p = blanks ? c.to : c.to + 1;
-    for (int n = 0; blanks && *p < end && (isspace((unsigned char)**p) || (strchr(marks, **p) && !n)); ++*p)
-        n += !isspace((unsigned char)**p);
+    for (int n = 0; blanks && *p < end && (is_blank(**p) || (strchr(marks, **p) && !n)); ++*p)
+        n += !is_blank(**p);
     if (blanks && *p >= end)
         *p = end + 1;
     strip(&c.from, &c.to);
@@ -154,7 +155,7 @@ int csv_is_error(const char *line, const char *end)
 int csv_has_decimal_commas(const char *line, const char *end)
 {
     for (const char *p = line; p < end; p++)
-        if (*p == ',' && (p == line || p + 1 == end || !isdigit((unsigned char)p[-1]) || !isdigit((unsigned char)p[1])))
+        if (*p == ',' && (p == line || p + 1 == end || !is_digit(p[-1]) || !is_digit(p[1])))
             return 0;
     return 1;
 }
@@ -219,16 +220,14 @@ static Status read_row(Reading *r, const char *from, const char *to, Err *err)
     const char *p = from;
     if (t->n_rows == r->rows) {
         const size_t rows = 2 * t->n_rows + 64, cells = rows * t->n_cols;
-        void *wider =
-            r->of_words ? realloc(t->cell, cells * sizeof *t->cell) : realloc(t->values, cells * sizeof *t->values);
-        if (wider && r->of_words)
-            t->cell = wider;
-        else if (wider)
-            t->values = wider;
-        int *line = wider ? realloc(t->line, rows * sizeof *line) : NULL;
-        if (!line)
+        size_t *cell = realloc(t->cell, cells * sizeof *cell);
+        t->cell = cell ? cell : t->cell;
+        double *values = realloc(t->values, cells * sizeof *values);
+        t->values = values ? values : t->values;
+        int *line = realloc(t->line, rows * sizeof *line);
+        t->line = line ? line : t->line;
+        if (!cell || !values || !line)
             return fail_memory(err, rows, "rows");
-        t->line = line;
         r->rows = rows;
     }
     for (size_t n = 0; n < t->n_cols; n++) {
@@ -236,17 +235,14 @@ static Status read_row(Reading *r, const char *from, const char *to, Err *err)
             return fail_at(err, &r->l, "%zu columns; the header has %zu", n, t->n_cols);
         const Cell c = cell_next(&p, to, r->separator);
         const size_t at = t->n_rows * t->n_cols + n, length = c.to - c.from;
-        const int is_empty = !r->of_words && r->has_header && length == 0;
-        double x = NAN;
-        const CellKind kind = is_empty ? NO_NUMBER : cell_number(c, 1, &x);
-        if (!r->of_words && kind != NUMBER && !is_empty)
-            return fail_number(t, r->l.number, n, c, err);
-        if (kind == NUMBER)
+        if (cell_number(c, 1, &t->values[at]) == NUMBER)
             TRY(lines_note_mark(&r->l, c, err));
-        if (!r->of_words) {
-            t->values[at] = x;
+        else if (r->of_words || (r->has_header && length == 0))
+            t->values[at] = NAN;
+        else
+            return fail_number(t, r->l.number, n, c, err);
+        if (!r->of_words)
             continue;
-        }
         memcpy(t->text + r->used, c.from, length);
         t->text[r->used + length] = 0;
         t->cell[at] = r->used;

@@ -67,8 +67,8 @@ typedef struct {
     size_t n_rows, n_cols;
     char (*names)[TABLE_NAME_MAX]; /* (n_cols), NULL without a header */
     int *line;                     /* (n_rows) of the file, from 1 */
-    double *values;                /* (n_rows, n_cols) row-major; NULL: cells of words and numbers */
-    char *text;                    /* such cells, each closed by a zero */
+    double *values;                /* (n_rows, n_cols) row-major; of a cell that is no number NAN */
+    char *text;                    /* cells of words and numbers, each closed by a zero */
     size_t *cell;                  /* (n_rows, n_cols) where each begins in text */
 } Table;
 

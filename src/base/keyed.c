@@ -1,6 +1,7 @@
 #include "base/keyed.h"
 
 #include "base/option.h"
+#include "base/text.h"
 
 static char last_letter(const KeyedNumber *k)
 {
@@ -23,10 +24,10 @@ Status keyed_numbers(const char *setting, const char *text, unsigned kind, size_
             i++;
         for (size_t k = 0; i == n && k < n; k++)
             if (keys[k].kinds & kind)
-                snprintf(all + strlen(all), sizeof all - strlen(all), " %s=%.*s", keys[k].key, keys[k].letters ? 4 : 0,
-                         (const char[]){'A', '.', '.', last_letter(&keys[k])});
+                text_join(all, sizeof all, " ", "%s=%.*s", keys[k].key, keys[k].letters ? 4 : 0,
+                          (const char[]){'A', '.', '.', last_letter(&keys[k])});
         if (i == n)
-            return bad_data(err, "%s: '%.60s' is none of%s", setting, word, all);
+            return bad_data(err, "%s: '%.60s' is none of %s", setting, word, all);
 
         /* Its value; none twice, for the other one would be lost. */
         const KeyedNumber *k = &keys[i];

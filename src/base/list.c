@@ -3,6 +3,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/text.h"
+
 int list_item(const char *list, size_t i, char item[], size_t size)
 {
     for (; list && i > 0; i--) {
@@ -28,17 +30,15 @@ size_t list_count(const char *list)
 
 void list_change(char list[LIST_MAX], ListItemFn change, void *user)
 {
-    char item[LIST_MAX], all[LIST_MAX] = "";
-    size_t n = 0;
+    char item[LIST_MAX], all[LIST_MAX + 1] = "";
     for (size_t i = 0; i < list_count(list); i++) {
         if (!list_item(list, i, item, sizeof item))
             return;
         change(item, user);
-        n += snprintf(all + n, sizeof all - n, "%s%s", i ? "," : "", item);
-        if (n >= sizeof all)
-            return;
+        text_join(all, sizeof all, ",", "%s", item);
     }
-    memcpy(list, all, n + 1);
+    if (strlen(all) < LIST_MAX)
+        memcpy(list, all, strlen(all) + 1);
 }
 
 int list_is_given(const char *list)

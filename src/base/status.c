@@ -5,6 +5,7 @@
 #include <stdarg.h>
 #include <unistd.h>
 
+#include "base/text.h"
 #include "base/visible.h"
 
 /* The sentence without invisible characters, which ends with dots where it was cut. */
@@ -142,8 +143,7 @@ Status fail_no_word(Err *err, Status code, const char *where, const char *word, 
     const char *near = nearest_word(word, list, n);
     if (near)
         return fail(err, code, "%s: %.60s is no %s; did you mean %s?", where, word, noun, near);
-    size_t end = 0;
-    for (int i = 0; i < n && end + strlen(list[i]) + 3 < sizeof all; i++)
-        end += snprintf(all + end, sizeof all - end, "%s%s", i ? ", " : "", list[i]);
+    for (int i = 0; i < n && strlen(all) + strlen(list[i]) + 3 < sizeof all; i++)
+        text_join(all, sizeof all, ", ", "%s", list[i]);
     return fail(err, code, "%s: %.40s is no %s; there are %s", where, word, noun, all);
 }

@@ -21,13 +21,8 @@
 
 #include "base/csv.h"
 #include "base/hash.h"
+#include "base/random.h"
 #include "motion/synthetic.h"
-
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wconversion"
-#pragma GCC diagnostic ignored "-Wmissing-prototypes"
-#include <Random123/philox.h>
-#pragma GCC diagnostic pop
 
 static const double DT_S = 0.02;
 
@@ -60,10 +55,9 @@ static const char *const TABLE[] = {_binary_src_motion_builtin_csv_start, _binar
 /* Sample i of a unit white noise: Philox4x32-10 at counter i, then Box and Muller. */
 static double white(uint32_t key, size_t i)
 {
-    const philox4x32_ctr_t at = {{(uint32_t)i, 0, 0, 0}};
-    const philox4x32_key_t name = {{key, 0x67726f75}};
-    const philox4x32_ctr_t bits = philox4x32(at, name);
-    return sqrt(-2 * log((bits.v[0] + 0.5) * 0x1p-32)) * cos(2 * M_PI * (bits.v[1] + 0.5) * 0x1p-32);
+    Random random = {.key = {key, 0x67726f75}, .counter = {(uint32_t)i}};
+    const double radius = sqrt(-2 * log((random_bits(&random) + 0.5) * 0x1p-32));
+    return radius * cos(2 * M_PI * (random_bits(&random) + 0.5) * 0x1p-32);
 }
 
 /* Its end is tapered, so that the filters come to rest before the motion ends. */
@@ -95,7 +89,7 @@ static void filter_step(Filter *f, double a)
 static Status make_motion(Motion *m, const Model *model, Err *err)
 {
     const Noise *z = &model->noise;
-    const size_t n = m->n = (size_t)lround(model->duration_s / DT_S) + 1;
+    const size_t n = m->n = lround(model->duration_s / DT_S) + 1;
     double *accel, peak = 0;
     m->dt_s = DT_S;
     TRY_ROOM(m->accel, n, "samples of a motion", err);

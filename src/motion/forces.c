@@ -31,7 +31,7 @@ static Status read_rows(Motion *m, const Table *t, Err *err)
             return bad_data(err, "%s: column '%s' is there twice", t->path, t->names[c]);
         m->n_force = MAX_OF(floor, m->n_force);
     }
-    const size_t width = (size_t)m->n_force + 1;
+    const size_t width = m->n_force + 1;
     m->n_force_rows = t->n_rows;
     TRY_ROOM(m->force_rows, t->n_rows * width, "forces", err);
     for (size_t i = 0; i < t->n_rows; i++) {
@@ -69,7 +69,7 @@ Status forces_read(Motion *m, const char *path, Err *err)
 
 static const double *row_of(const Motion *m, size_t i)
 {
-    return m->force_rows + i * ((size_t)m->n_force + 1);
+    return m->force_rows + i * (m->n_force + 1);
 }
 
 /* [s] for both: the longest step of which all times of the rows are multiples, a part of the ground's step, or of the

@@ -3,8 +3,6 @@
 #include <ctype.h>
 
 #include "base/hash.h"
-#include "base/csv.h"
-#include "base/units.h"
 #include "motion/formats/record.h"
 
 /* The strongest ground acceleration ever recorded is near 4 g; far beyond that a unit is wrong (El Centro in cm/s2
@@ -45,7 +43,6 @@ Status motion_unit_parse(const char *text, MotionUnit *unit, double *counts_per_
 static Status settle_unit(const char *path, const Channel *c, const MotionHow *how, MotionUnit *unit, double *to_m_s2,
                           Err *err)
 {
-    static const double M_S2[] = {0, 1, 0.01, GRAVITY, 1};
     *unit = how->unit ? how->unit : c->unit;
     if (!*unit && c->counts)
         return bad_data(
@@ -66,7 +63,7 @@ static Status settle_unit(const char *path, const Channel *c, const MotionHow *h
     if (c->unit && *unit != c->unit)
         return bad_data(err, "%s: motion.unit is %s, but the file says %s; leave motion.unit at from_file", path,
                         UNIT_NAMES[*unit], UNIT_NAMES[c->unit]);
-    *to_m_s2 = c->scale * M_S2[*unit] / (*unit == UNIT_COUNTS ? how->counts_per_m_s2 : 1);
+    *to_m_s2 = c->scale * UNIT_IN_M_S2[*unit] / (*unit == UNIT_COUNTS ? how->counts_per_m_s2 : 1);
     return STATUS_OK;
 }
 
@@ -84,7 +81,7 @@ static int is_acceleration(const Channel *c)
         return 0;
     for (; p < end; p += p < end) { /* "Sa(g)", "NS PSA" */
         const char *word = p;
-        while (p < end && isalnum((unsigned char)*p))
+        while (p < end && (is_letter(*p) || is_digit(*p)))
             p++;
         if (text_is(EQUALS, word, p, "sa|psa|psv|fas"))
             return 0;
@@ -97,7 +94,7 @@ static void plain_name(const char *name, char plain[64])
 {
     size_t n = 0;
     for (; *name && n < 63; name++)
-        if (isalnum((unsigned char)*name))
+        if (is_letter(*name) || is_digit(*name))
             plain[n++] = (char)tolower((unsigned char)*name);
     plain[n] = 0;
 }
@@ -131,27 +128,27 @@ static const Channel *find_channel(const Record *r, const char *wanted)
 static Status choose_channel(const Record *r, const char *path, const Channel **out, Err *err)
 {
     enum { LIST_MAX = 360 }; /* of the 480 bytes of Err */
-    const char *wanted = r->hints.channel;
+    const char *wanted = r->how->channel;
     const size_t n = r->n_channels, each = n ? (LIST_MAX - 16) / n : 0;
     const int shown = each > 8 + CHANNEL_NAME_MAX ? CHANNEL_NAME_MAX : each > 24 ? (int)each - 8 : 16;
     char list[LIST_MAX] = "";
-    int n_accelerations = 0;
-    size_t used = 0;
-
-    /* "1 'NS', 2 'EW'", names shortened where there are too many for a message. */
-    for (size_t i = 0; i < n && used + shown + 24 < LIST_MAX; i++) {
-        char name[CHANNEL_NAME_MAX + 1];
-        name_shorten(name, shown, r->channel[i].name);
-        used += snprintf(list + used, LIST_MAX - used, name[0] ? "%s%zu '%s'" : "%s%zu (no name)", i ? ", " : "", i + 1,
-                         name);
-        if (i + 1 < n && used + shown + 24 >= LIST_MAX)
-            snprintf(list + used, LIST_MAX - used, ", ... %zu", n);
-    }
-    for (size_t i = 0; i < n; i++)
+    int n_accelerations = 0, is_full = 0;
+    for (size_t i = 0; i < n; i++) {
         if (is_acceleration(&r->channel[i])) {
             *out = &r->channel[i];
             n_accelerations++;
         }
+
+        /* "1 'NS', 2 'EW'", names shortened where there are too many for a message. */
+        char name[CHANNEL_NAME_MAX + 1];
+        name_shorten(name, shown, r->channel[i].name);
+        if (is_full)
+            continue;
+        text_join(list, LIST_MAX, ", ", name[0] ? "%zu '%s'" : "%zu (no name)", i + 1, name);
+        is_full = strlen(list) + shown + 24 >= LIST_MAX;
+        if (i + 1 < n && is_full)
+            text_join(list, LIST_MAX, ", ", "... %zu", n);
+    }
     if (wanted)
         *out = find_channel(r, wanted);
     else if (n_accelerations != 1)
@@ -183,6 +180,9 @@ static const Row *row_at(const Series *s, size_t i)
 {
     return &s->base[i * s->c->stride];
 }
+
+/* bad_data of "PATH:LINE: what" at a row. */
+#define fail_row(err, s, row, what, ...) bad_data(err, "%s:%d: " what, (s)->path, (row)->line, ##__VA_ARGS__)
 
 /* The shortest decimal number within `slack` of x: times printed with few digits say 0.02, not 0.0200003. */
 static double shortest_near(double x, double slack)
@@ -231,12 +231,11 @@ static Status uniform_step(const Series *s, double *dt, Err *err)
         if (fabs(step_before(s, i) - *dt) > fabs(step_before(s, odd) - *dt))
             odd = i;
     const double step = step_before(s, odd), others = fmax((double)n - 2, 1);
-    return bad_data(
-        err,
-        "%s:%d: time %.10g s breaks the uniform step of %.6g s: it comes %.6g s after the line before; a sample "
-        "is missing, or the file must be resampled: %sset motion.dt_s",
-        s->path, row_at(s, odd)->line, row_at(s, odd)->t, shortest_near((span - step) / others, digit / others), step,
-        s->c->is_timed ? "" : "name the column of its times time_s and ");
+    return fail_row(err, s, row_at(s, odd),
+                    "time %.10g s breaks the uniform step of %.6g s: it comes %.6g s after the line before; a sample "
+                    "is missing, or the file must be resampled: %sset motion.dt_s",
+                    row_at(s, odd)->t, shortest_near((span - step) / others, digit / others), step,
+                    s->c->is_timed ? "" : "name the column of its times time_s and ");
 }
 
 /* The step that the file states or its times have; 0: the times are uneven and to be resampled. */
@@ -249,18 +248,17 @@ static Status find_step(const Series *s, const MotionHow *how, double *dt, Err *
     if (*dt == 0) {
         for (size_t i = 1; i < c->n; i++) /* times on film may coincide in the digits that are printed */
             if (!(step_before(s, i) > 0) && !(c->digitized && step_before(s, i) == 0))
-                return bad_data(err, "%s:%d: time %.10g s does not come after %.10g s", s->path, row_at(s, i)->line,
-                                row_at(s, i)->t, row_at(s, i - 1)->t);
+                return fail_row(err, s, row_at(s, i), "time %.10g s does not come after %.10g s", row_at(s, i)->t,
+                                row_at(s, i - 1)->t);
         uniform_step(s, dt, &uneven);
     }
     if (*dt > MOTION_STEP_MAX_S)
-        return bad_data(err, "%s:%d: a step of %g s; more than %g s is no record of an earthquake", s->path,
-                        row_at(s, 0)->line, *dt, MOTION_STEP_MAX_S);
+        return fail_row(err, s, row_at(s, 0), "a step of %g s; more than %g s is no record of an earthquake", *dt,
+                        MOTION_STEP_MAX_S);
     if (uneven.code != STATUS_OK && (how->dt_s == 0 || !(c->is_timed || c->digitized)))
-        return c->digitized ? bad_data(err,
-                                       "%s:%d: digitized from film, where its trace bends; have it resampled by "
-                                       "straight lines: --set motion.dt_s=0.005",
-                                       s->path, row_at(s, 0)->line)
+        return c->digitized ? fail_row(err, s, row_at(s, 0),
+                                       "digitized from film, where its trace bends; have it resampled by straight "
+                                       "lines: --set motion.dt_s=0.005")
                             : bad_data(err, "%s", uneven.text);
 
     /* The header's step and that of the printed times, which have fewer digits: within 1 %, and half a step in all. */
@@ -295,8 +293,8 @@ static Status check_peak(Motion *m, const Series *s, double offset, double to_m_
     const double error = c->peak > 0 ? (fabs(peak - c->peak) - c->peak_slack) / c->peak : 0;
     char what[160];
     if (!(fabs(highest->a) * to_m_s2 <= LARGEST_PEAK_G * GRAVITY))
-        return bad_data(err, "%s:%d: an acceleration of %g %s is beyond %g g; is the unit right?", s->path,
-                        highest->line, c->scale * highest->a, UNIT_NAMES[unit], LARGEST_PEAK_G);
+        return fail_row(err, s, highest, "an acceleration of %g %s is beyond %g g; is the unit right?",
+                        c->scale * highest->a, UNIT_NAMES[unit], LARGEST_PEAK_G);
     snprintf(what, sizeof what, "its samples peak at %.5g %s, its header says %.5g", peak * to_file, UNIT_NAMES[unit],
              c->peak * to_file);
     if (error > PEAK_ERROR_MAX)
@@ -319,10 +317,10 @@ static Status find_mean(const Series *s, double *mean, Err *err)
         n_negative += a < 0;
     }
     if (s->c->is_bare && n_negative == 0)
-        return bad_data(err,
-                        "%s:%d: no value is negative, as in a spectrum over its periods; if these are times and an "
-                        "acceleration, say so: --text columns=time:1,value:2 (motion.text), or names above the columns",
-                        s->path, row_at(s, 0)->line);
+        return fail_row(err, s, row_at(s, 0),
+                        "no value is negative, as in a spectrum over its periods; if these are times and an "
+                        "acceleration, say so: --text columns=time:1,value:2 (motion.text), or names above the "
+                        "columns");
     return STATUS_OK;
 }
 
@@ -355,8 +353,7 @@ static Status convert_samples(Motion *m, const Series *s, const MotionHow *how, 
         if (!(n >= 2 && n <= 1e6 + 16 * (double)c->n))
             return bad_data(err, "%s: motion.dt_s = %g would make %.0f samples of %zu in %g s", s->path, dt, n, c->n,
                             span);
-        snprintf(m->processed + strlen(m->processed), sizeof m->processed - strlen(m->processed),
-                 "%sresampled every %g s by straight lines", m->processed[0] ? "; " : "", dt);
+        text_join(m->processed, sizeof m->processed, "; ", "resampled every %g s by straight lines", dt);
     }
     TRY_ROOM(m->accel, n, "samples of a motion", err);
     m->n = (size_t)n;
@@ -390,7 +387,7 @@ static Status add_member(const char *name, const char *bytes, size_t n, void *us
     Err why = {0};
     Record *one;
     TRY_ROOM(one, 1, "a record", err);
-    one->hints = members->r->hints;
+    one->how = members->r->how;
     one->deep = members->r->deep + 1;
     Status status = read_content(one, name, bytes, n, &why);
     if (status == STATUS_OK)
@@ -413,11 +410,10 @@ static Status add_member(const char *name, const char *bytes, size_t n, void *us
 /* Every channel of an archive, of a binary file, or of a text. */
 static Status read_content(Record *r, const char *path, const char *bytes, size_t n, Err *err)
 {
-    const unsigned char *raw = (const unsigned char *)bytes;
     Members members = {.r = r, .path = path};
     Lines l;
     int line = 1;
-    if (archive_is(raw, n)) {
+    if (archive_is(bytes, n)) {
         if (r->deep == ARCHIVES_DEEP)
             return bad_data(err, "%s: an archive in an archive in an archive", path);
         TRY(archive_each(path, bytes, n, add_member, &members, err));
@@ -426,7 +422,7 @@ static Status read_content(Record *r, const char *path, const char *bytes, size_
                                             members.first.text[0] ? members.first.text : "it is empty");
     }
     for (size_t i = 0; i < N_OF(BINARY_FORMATS); i++)
-        if (BINARY_FORMATS[i]->recognise(raw, n)) {
+        if (BINARY_FORMATS[i]->recognise(bytes, n)) {
             r->is_known = BINARY_FORMATS[i] != &FORMAT_SIMCENTER; /* JSON may be anything */
             TRY(BINARY_FORMATS[i]->read(r, path, bytes, n, err));
             for (size_t k = 0; k < r->n_channels; k++)
@@ -439,10 +435,10 @@ static Status read_content(Record *r, const char *path, const char *bytes, size_
         return bad_data(err, "%s: is empty", path);
     const int is_wide = n >= 2 && (memcmp(bytes, "\xff\xfe", 2) == 0 || memcmp(bytes, "\xfe\xff", 2) == 0);
     for (size_t i = 0; i < n && !is_wide; i++) {
-        if (raw[i] < ' ' && !isspace(raw[i]))
+        if ((unsigned char)bytes[i] < ' ' && !is_blank(bytes[i]))
             return bad_data(err, "%s:%d: holds bytes that no text has; a binary file of this kind is not read", path,
                             line);
-        line += raw[i] == '\n';
+        line += bytes[i] == '\n';
     }
     TRY(lines_open(&l, path, bytes, n, err));
     return text_read(r, &l, err);
@@ -451,22 +447,20 @@ static Status read_content(Record *r, const char *path, const char *bytes, size_
 Status motion_parse(Motion *m, const char *path, const char *text, size_t length, const MotionHow *how, Err *err)
 {
     const Channel *c = NULL;
+    MotionHow used = *how;
     Record *r;
     memset(m, 0, sizeof *m);
     TRY_ROOM(r, 1, "a record", err);
-    r->hints.dt_s = how->dt_s;
-    r->hints.text = how->text;
-    r->hints.channel = how->channel && strcmp(how->channel, "auto") != 0 ? how->channel : NULL;
+    if (used.channel && strcmp(used.channel, "auto") == 0)
+        used.channel = NULL;
+    r->how = &used;
     Status s = read_content(r, path, text, length, err);
-    if (s == STATUS_OK)
-        s = choose_channel(r, path, &c, err);
-    if (s == STATUS_OK)
-        s = convert_samples(m, &(Series){path, c, r->row + c->first}, how, err);
+    THEN(s, choose_channel(r, path, &c, err));
+    THEN(s, convert_samples(m, &(Series){path, c, r->row + c->first}, how, err));
     if (s == STATUS_OK) {
-        const size_t used = strlen(m->warning);
         if (how->dt_s > 0 && fabs(how->dt_s - m->dt_s) > 1e-6 * m->dt_s)
-            snprintf(m->warning + used, sizeof m->warning - used,
-                     "%smotion.dt_s = %g is not used: the file says %.6g s", used ? "; " : "", how->dt_s, m->dt_s);
+            text_join(m->warning, sizeof m->warning, "; ", "motion.dt_s = %g is not used: the file says %.6g s",
+                      how->dt_s, m->dt_s);
         m->is_corrected = c->is_corrected;
         snprintf(m->name, sizeof m->name, "%s", path);
         snprintf(m->format, sizeof m->format, "%s", c->format);

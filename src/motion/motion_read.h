@@ -25,15 +25,6 @@
 #include "motion/options.h"
 #include "motion/text_form.h"
 
-typedef struct {
-    MotionUnit unit;     /* of the acceleration; must not contradict the file */
-    const char *channel; /* name or number (from 1) of the one that is wanted; NULL or "auto": there must be only one */
-    double dt_s;         /* step of a file that has neither step nor times, or of unequal times, which are
-                               resampled to it by straight lines; 0: such files are refused */
-    double counts_per_m_s2; /* UNIT_COUNTS: gain of the instrument */
-    TextForm text;
-} MotionHow;
-
 /* motion.unit: a word of MOTION_UNIT_LIST, counts with "=" and their number per m/s2. */
 Status motion_unit_parse(const char *text, MotionUnit *unit, double *counts_per_m_s2, Err *err);
 

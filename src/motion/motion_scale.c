@@ -1,11 +1,10 @@
 #include "motion/motion_scale.h"
 
-#include <stdarg.h>
-
 #include "base/filter.h"
 #include "base/hash.h"
 #include "base/keyed.h"
 #include "base/list.h"
+#include "base/text.h"
 #include "base/units.h"
 #include "motion/builtin.h"
 #include "motion/forces.h"
@@ -15,17 +14,6 @@
 
 enum { PADDING_MAX = 10000000 };                        /* samples: 80 MB */
 static const double HIGHPASS_PAD = 0.75 * FILTER_ORDER; /* [-] times 1 / fc, before and behind */
-
-/* Adds to what was done to the samples. */
-static __attribute__((format(printf, 2, 3))) void say(Motion *m, const char *format, ...)
-{
-    const size_t used = strlen(m->processed);
-    va_list list;
-    va_start(list, format);
-    snprintf(m->processed + used, sizeof m->processed - used, "%s", used ? "; " : "");
-    vsnprintf(m->processed + strlen(m->processed), sizeof m->processed - strlen(m->processed), format, list);
-    va_end(list);
-}
 
 /* ---- base line --------------------------------------------------------------------------------------------------- */
 
@@ -62,7 +50,8 @@ static Status subtract_baseline(Motion *m, int degree, Err *err)
         m->accel[i] -= line;
         largest = fmax(largest, fabs(line));
     }
-    say(m, "base line: %s subtracted, at most %.3g g", WORDS[degree], largest / GRAVITY);
+    text_join(m->processed, sizeof m->processed, "; ", "base line: %s subtracted, at most %.3g g", WORDS[degree],
+              largest / GRAVITY);
     return STATUS_OK;
 }
 
@@ -74,7 +63,6 @@ static Status filter(Motion *m, FilterKind kind, const char *key, double cutoff_
     Filter f;
     Err why = {0};
     double *wider;
-    char added[64] = "";
     const int is_high = kind == FILTER_HIGH_PASS;
     const Status status = filter_butterworth(&f, kind, cutoff_hz, m->dt_s, &why);
     if (status != STATUS_OK)
@@ -90,9 +78,11 @@ static Status filter(Motion *m, FilterKind kind, const char *key, double cutoff_
     m->accel = wider;
     filter_zero_phase(&f, n, 1, m->accel);
     m->n = is_high ? n : m->n;
+    text_join(m->processed, sizeof m->processed, "; ", "%s-pass %g Hz (4th order Butterworth, zero phase)",
+              is_high ? "high" : "low", cutoff_hz);
     if (is_high)
-        snprintf(added, sizeof added, ", %.4g s of zeros added at both ends", (double)padding * m->dt_s);
-    say(m, "%s-pass %g Hz (4th order Butterworth, zero phase)%s", is_high ? "high" : "low", cutoff_hz, added);
+        text_join(m->processed, sizeof m->processed, ", ", "%.4g s of zeros added at both ends",
+                  (double)padding * m->dt_s);
     return STATUS_OK;
 }
 
@@ -140,26 +130,22 @@ static const double SOILS[][4] = {
 
 Status target_parse(const char *text, CodeSpectrum *c, Err *err)
 {
-    static const char *const KINDS[] = {"none", "eurocode8", "asce7"};
     char copy[OPTION_TEXT_MAX], *rest = copy;
     double x[N_KEYS] = {0};
-    int kind = 0;
-    snprintf(copy, sizeof copy, "%s", *text ? text : KINDS[TARGET_NONE]);
+    *c = (CodeSpectrum){TARGET_NONE};
+    if (!list_is_given(text))
+        return STATUS_OK;
+    snprintf(copy, sizeof copy, "%s", text);
     const char *word = strsep(&rest, " ");
-    while (kind <= TARGET_ASCE7 && strcmp(word, KINDS[kind]) != 0)
-        kind++;
-    *c = (CodeSpectrum){.kind = kind};
-    if (kind > TARGET_ASCE7 || (kind == TARGET_NONE && rest))
+    const int is_eurocode = strcmp(word, "eurocode8") == 0, kind = is_eurocode ? TARGET_EUROCODE8 : TARGET_ASCE7;
+    if (!is_eurocode && strcmp(word, "asce7") != 0)
         return bad_data(err, "motion.target: '%s' is none of none, eurocode8 ag=... , asce7 sds=...", text);
     if (rest)
         TRY(keyed_numbers("motion.target", rest, 1u << kind, N_KEYS, KEYS, x, err));
-    if (kind == TARGET_NONE)
-        return STATUS_OK;
 
     /* Both codes rise from 0.4 to a plateau, which ends at TC, and fall with T and from TD on with its square. */
     for (int k = 0; k < N_KEYS; k++)
         x[k] = x[k] != 0 ? x[k] : k >= S && k <= TD && x[SOIL] > 0 ? SOILS[(int)x[SOIL] - 1][k - S] : OTHERWISE[k];
-    const int is_eurocode = kind == TARGET_EUROCODE8;
     const double ts = x[SD1] / x[SDS];
     *c = is_eurocode ? (CodeSpectrum){kind, x[FROM], x[TO], 2.5 * x[AG] * x[S], x[TB], x[TC], x[TD]}
                      : (CodeSpectrum){kind, x[FROM], x[TO], x[SDS], 0.2 * ts, ts, x[TL]};
@@ -252,12 +238,9 @@ Status motion_scale(Motion *m, const MotionOptions *o, Err *err)
 
     /* A record that must be multiplied by so much is not what it is taken for. A factor of one's own may convert
      * units. */
-    if (m->scale > SCALE_PLAUSIBLE || m->scale < 1 / SCALE_PLAUSIBLE) {
-        const size_t used = strlen(m->warning);
-        snprintf(m->warning + used, sizeof m->warning - used,
-                 "%sscaled by %.3g; records are scaled by %g to %g as a rule", used ? "; " : "", m->scale,
-                 1 / SCALE_PLAUSIBLE, SCALE_PLAUSIBLE);
-    }
+    if (m->scale > SCALE_PLAUSIBLE || m->scale < 1 / SCALE_PLAUSIBLE)
+        text_join(m->warning, sizeof m->warning, "; ", "scaled by %.3g; records are scaled by %g to %g as a rule",
+                  m->scale, 1 / SCALE_PLAUSIBLE, SCALE_PLAUSIBLE);
     if (o->factor == 1 && source.factor == 1 && m->scale > SCALE_MAX) {
         motion_scalings(o, scaling);
         return bad_data(
@@ -278,13 +261,13 @@ int motion_scalings(const MotionOptions *o, char text[SCALINGS_TEXT_MAX])
     int n = 0;
     text[0] = 0;
     for (int i = 0; i < 3; i++)
-        if (NUMBERS[i].x != NUMBERS[i].without)
-            snprintf(text + strlen(text), SCALINGS_TEXT_MAX - strlen(text), "%smotion.%s = %g", n++ ? ", " : "",
-                     NUMBERS[i].key, NUMBERS[i].x);
-    if (o->target[0] && strcmp(o->target, "none") != 0)
-        snprintf(text + strlen(text), SCALINGS_TEXT_MAX - strlen(text), "%smotion.target = %.40s", n++ ? ", " : "",
-                 o->target);
-    return n;
+        if (NUMBERS[i].x != NUMBERS[i].without) {
+            text_join(text, SCALINGS_TEXT_MAX, ", ", "motion.%s = %g", NUMBERS[i].key, NUMBERS[i].x);
+            n++;
+        }
+    if (list_is_given(o->target))
+        text_join(text, SCALINGS_TEXT_MAX, ", ", "motion.target = %.40s", o->target);
+    return n + list_is_given(o->target);
 }
 
 void motion_unscale(MotionOptions *o)
@@ -326,11 +309,10 @@ Status motion_open(Motion *m, const MotionOptions *o, Err *err)
         TRY(load(m, source.path, &how, err));
     }
     const char *words = o->record + source_path_length(o->record);
-    if (*words)
-        m->file_hash = hash_fnv1a(words, strlen(words), m->file_hash);
+    m->file_hash = hash_fnv1a(words, strlen(words), m->file_hash); /* without words it stays what it is */
     Status status = is_still(o) ? STATUS_OK : motion_process(m, o, err);
-    if (status == STATUS_OK && list_is_given(o->forces))
-        status = forces_read(m, o->forces, err);
+    if (list_is_given(o->forces))
+        THEN(status, forces_read(m, o->forces, err));
     if (status != STATUS_OK)
         motion_free(m);
     return status;

@@ -5,7 +5,8 @@
 /* ---- oscillator ----------------------------------------------------------------------------------------------- */
 
 typedef struct {
-    double w, zeta, wd, per_ww; /* [rad/s], [-], damped [rad/s], 1 / w^2 */
+    double w, zeta, wd;                /* [rad/s], [-], damped [rad/s] */
+    double ww, damping, per_w, per_ww; /* w^2, 2 zeta w, 1 / w, 1 / w^2 */
 } Oscillator;
 
 /* What one interval of length tau does:   h impulse response, its slope h1, I1 = int h, I2 = int I1   (all at tau) */
@@ -38,11 +39,11 @@ static Flow flow(const Oscillator *o, double tau)
 {
     if (o->w * tau < 1)
         return flow_series(o, tau);
-    const double decay = exp(-o->zeta * o->w * tau), ww = o->w * o->w;
+    const double decay = exp(-o->zeta * o->w * tau);
     const double c = cos(o->wd * tau) * decay, s = sin(o->wd * tau) * decay / o->wd;
     Flow f = {.h = s, .h1 = c - o->zeta * o->w * s};
-    f.I1 = (1 - c - o->zeta * o->w * s) / ww;
-    f.I2 = (tau - s - 2 * o->zeta * o->w * f.I1) / ww;
+    f.I1 = (1 - c - o->zeta * o->w * s) / o->ww;
+    f.I2 = (tau - s - o->damping * f.I1) / o->ww;
     return f;
 }
 
@@ -64,9 +65,9 @@ static State state_at(const Interval *in, double tau)
     const Oscillator *o = in->o;
     const State y = in->y;
     const Flow f = flow(o, tau);
-    const double g = f.h1 + 2 * o->zeta * o->w * f.h;
+    const double g = f.h1 + o->damping * f.h;
     return (State){.u = g * y.u + f.h * y.v - in->a * f.I1 - in->slope * f.I2,
-                   .v = -o->w * o->w * f.h * y.u + f.h1 * y.v - in->a * f.h - in->slope * f.I1};
+                   .v = -o->ww * f.h * y.u + f.h1 * y.v - in->a * f.h - in->slope * f.I1};
 }
 
 /* The velocity is monotone in lo..hi and changes sign: Newton, kept inside by bisection. |u| at its zero. */
@@ -81,7 +82,7 @@ static double extremum(const Interval *in, double lo, double hi, double v_lo)
             lo = tau;
         else
             hi = tau;
-        const double accel = -in->a - in->slope * tau - 2 * o->zeta * o->w * y.v - o->w * o->w * y.u;
+        const double accel = -in->a - in->slope * tau - o->damping * y.v - o->ww * y.u;
         double next = tau - y.v / accel;
         if (!(next > lo && next < hi))
             next = 0.5 * (lo + hi);
@@ -101,9 +102,9 @@ static double extremum(const Interval *in, double lo, double hi, double v_lo)
 static double largest_inside(const Interval *in, double dt, double v_end)
 {
     const Oscillator *o = in->o;
-    const double r = -in->a - 2 * o->zeta * o->w * in->y.v - o->w * o->w * in->y.u; /* u''(0)  */
-    const double j = -in->slope - 2 * o->zeta * o->w * r - o->w * o->w * in->y.v;   /* u'''(0) */
-    double phase = atan2(-r * o->wd, r * o->zeta * o->w + j);                       /* wd tau of a zero, modulo pi */
+    const double r = -in->a - o->damping * in->y.v - o->ww * in->y.u; /* u''(0)  */
+    const double j = -in->slope - o->damping * r - o->ww * in->y.v;   /* u'''(0) */
+    double phase = atan2(-r * o->wd, r * o->zeta * o->w + j);         /* wd tau of a zero, modulo pi */
     phase -= M_PI * floor(phase / M_PI);
     const double half_cycles = ceil(fmax(o->wd * dt - phase, 0) / M_PI);
     double lo = 0, v_lo = in->y.v, largest = 0;
@@ -128,9 +129,8 @@ static double largest_inside(const Interval *in, double dt, double v_end)
 
 /* What an interval of length dt does, and what the bounds on |u| need. */
 typedef struct {
-    double uu, uv, vu, vv, I1, I2;          /* u' = uu u + uv v - I1 a - I2 slope, v' = vu u + vv v - uv a - I1 slope */
-    double per_ww, lag, per_w, ww, damping; /* 1 / w^2, 2 zeta / w^3, 1 / w, w^2, 2 zeta w */
-    double dt, chord;                       /* dt^4 / 64 */
+    double uu, uv, vu, vv, I1, I2; /* u' = uu u + uv v - I1 a - I2 slope, v' = vu u + vv v - uv a - I1 slope */
+    double lag, dt, chord;         /* 2 zeta / w^3, dt^4 / 64 */
 } Step;
 
 /* Advances y over an interval and raises the largest |u| to what is in it. u is a line p (what the ground's line leads
@@ -140,16 +140,16 @@ typedef struct {
 static void cross(const Oscillator *o, const Step *g, State *y, double *largest, double a, double slope)
 {
     const Interval in = {.o = o, .y = *y, .a = a, .slope = slope};
-    const double rise = -slope * g->per_ww, p = -a * g->per_ww - g->lag * rise;
-    const double e = in.y.u - p, de = (in.y.v - rise) * g->per_w, square = e * e + de * de;
+    const double rise = -slope * o->per_ww, p = -a * o->per_ww - g->lag * rise;
+    const double e = in.y.u - p, de = (in.y.v - rise) * o->per_w, square = e * e + de * de;
     const double line0 = *largest - fabs(p), line1 = *largest - fabs(p + rise * g->dt);
     y->u = g->uu * in.y.u + g->uv * in.y.v - a * g->I1 - slope * g->I2;
     y->v = g->vu * in.y.u + g->vv * in.y.v - a * g->uv - slope * g->I1;
     *largest = fmax(*largest, fabs(y->u));
     if (line0 >= 0 && line1 >= 0 && square <= line0 * line0 && square <= line1 * line1)
         return;
-    const double r = -a - g->damping * in.y.v - g->ww * in.y.u, j = -slope - g->damping * r - g->ww * in.y.v;
-    const double above = g->chord * (r * r + j * j * g->per_ww);
+    const double r = -a - o->damping * in.y.v - o->ww * in.y.u, j = -slope - o->damping * r - o->ww * in.y.v;
+    const double above = g->chord * (r * r + j * j * o->per_ww);
     const double room0 = *largest - fabs(in.y.u), room1 = *largest - fabs(y->u);
     if (!(above <= room0 * room0 && above <= room1 * room1))
         *largest = fmax(*largest, largest_inside(&in, g->dt, y->v));
@@ -160,19 +160,15 @@ static double largest_displacement(const Motion *m, const Oscillator *o)
 {
     const double half_period = M_PI / o->wd;
     const Flow f = flow(o, m->dt_s);
-    Step g = {.uv = f.h,
-              .vv = f.h1,
-              .I1 = f.I1,
-              .I2 = f.I2,
-              .per_ww = o->per_ww,
-              .per_w = o->w * o->per_ww,
-              .ww = o->w * o->w,
-              .damping = 2 * o->zeta * o->w,
-              .dt = m->dt_s,
-              .chord = pow(m->dt_s, 4) / 64};
-    g.lag = g.damping * g.per_ww;
-    g.uu = f.h1 + g.damping * f.h;
-    g.vu = -g.ww * f.h;
+    const Step g = {.uu = f.h1 + o->damping * f.h,
+                    .uv = f.h,
+                    .vu = -o->ww * f.h,
+                    .vv = f.h1,
+                    .I1 = f.I1,
+                    .I2 = f.I2,
+                    .lag = o->damping * o->per_ww,
+                    .dt = m->dt_s,
+                    .chord = pow(m->dt_s, 4) / 64};
     Interval rest = {.o = o};
     double largest = 0;
     for (size_t i = 0; i + 1 < m->n; i++)
@@ -186,7 +182,7 @@ void spectrum_psa(const Motion *m, double zeta, size_t n, const double T[], doub
 #pragma omp parallel for schedule(dynamic)
     for (size_t i = 0; i < n; i++) {
         const double w = 2 * M_PI / T[i]; /* a rigid one moves with the ground */
-        const Oscillator o = {.w = w, .zeta = zeta, .wd = w * sqrt(1 - zeta * zeta), .per_ww = 1 / (w * w)};
+        const Oscillator o = {w, zeta, w * sqrt(1 - zeta * zeta), w * w, 2 * zeta * w, w * (1 / (w * w)), 1 / (w * w)};
         psa[i] = T[i] > 0 ? w * w * largest_displacement(m, &o) : motion_peak(m);
     }
 }

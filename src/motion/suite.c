@@ -65,11 +65,6 @@ Status source_read(const char *text, Source *out, Err *err)
 
 /* -- a suite ------------------------------------------------------------------------------------------------------- */
 
-static int is_visible(const struct dirent *e)
-{
-    return e->d_name[0] != '.';
-}
-
 static int by_name(const struct dirent **a, const struct dirent **b)
 {
     return strcmp((*a)->d_name, (*b)->d_name); /* the same order in every language */
@@ -98,14 +93,16 @@ static Status each_of_folder(const char *folder, SourceFn take, void *user, Err 
     char path[OPTION_TEXT_MAX];
     size_t length = strlen(folder), n_files = 0;
     Status status = STATUS_OK;
-    const int n = scandir(folder, &names, is_visible, by_name);
+    const int n = scandir(folder, &names, NULL, by_name);
     if (n < 0)
         return fail_missing(err, folder);
     while (length > 1 && folder[length - 1] == '/')
         length--;
     for (int i = 0; i < n; i++) {
-        THEN(status, put_inside(path, folder, length, names[i]->d_name, err));
-        if (status == STATUS_OK && !is_folder(path)) {
+        const int is_hidden = names[i]->d_name[0] == '.';
+        if (!is_hidden)
+            THEN(status, put_inside(path, folder, length, names[i]->d_name, err));
+        if (status == STATUS_OK && !is_hidden && !is_folder(path)) {
             n_files++;
             status = take(path, user, err);
         }
@@ -138,9 +135,10 @@ static Status each_of_list(const char *path, SourceFn take, void *user, Err *err
         if (status != STATUS_OK || !*begin)
             continue;
         n++;
-        status = put_inside(source, path, slash ? (size_t)(slash - path) : 0, begin, err);
-        if (status == STATUS_OK &&
-            ((status = source_read(source, &s, &why)) != STATUS_OK || (status = take(source, user, &why)) != STATUS_OK))
+        status = put_inside(source, path, slash ? slash - path : 0, begin, &why);
+        THEN(status, source_read(source, &s, &why));
+        THEN(status, take(source, user, &why));
+        if (status != STATUS_OK)
             fail(err, status, "%s:%d: %.300s", path, at, why.text);
     }
     fclose(f);

@@ -21,11 +21,6 @@ double synthetic_target(double T)
     return plateau * (T < begin ? 0.4 + 0.6 * T / begin : T <= end ? 1 : end / T);
 }
 
-static double period(size_t j)
-{
-    return SUITE_SHORTEST_S * pow(SUITE_LONGEST_S / SUITE_SHORTEST_S, (double)j / (SUITE_PERIODS - 1));
-}
-
 /* exp(eps_i) at period j: half of the variance is common to all periods, cosines of ln T have the rest. */
 static double scatter(size_t i, size_t j)
 {
@@ -36,19 +31,6 @@ static double scatter(size_t i, size_t j)
         eps += sqrt(left) * random_normal(&random) * cos(m * M_PI * (double)j / (SUITE_PERIODS - 1));
     }
     return exp(SUITE_SPREAD * eps);
-}
-
-/* (n) zero at both ends. */
-static void draw_envelope(size_t i, size_t n, double e[])
-{
-    Random random = stream(i, OF_ENVELOPE);
-    const double rise = 2 + 3 * random_uniform(&random), stay = 4 + 8 * random_uniform(&random),
-                 decay = 3 + 3 * random_uniform(&random), taper = 6;
-    for (size_t k = 0; k < n; k++) {
-        const double t = (double)k * DT_S, over = t - rise - stay, left = SECONDS - t;
-        e[k] = (t < rise ? t * t / (rise * rise) : 1) * (over > 0 ? exp(-over / decay) : 1) *
-               (left < taper ? 0.5 - 0.5 * cos(M_PI * left / taper) : 1);
-    }
 }
 
 /* Bands (SUITE_PERIODS, n): cosines about each period, with the amplitudes that a flat spectrum of unit height has but
@@ -101,7 +83,7 @@ static void fit(size_t i, const double bands[], Motion *m)
         double sum = 0;
         for (size_t other = 0; other < SUITE_MOTIONS; other++)
             sum += scatter(other, j) / SUITE_MOTIONS;
-        T[j] = period(j);
+        T[j] = SUITE_SHORTEST_S * pow(SUITE_LONGEST_S / SUITE_SHORTEST_S, (double)j / (SUITE_PERIODS - 1));
         factor[j] = target[j] = synthetic_target(T[j]) * scatter(i, j) / sum;
     }
     for (int c = 0; c <= CORRECTIONS; c++) {
@@ -121,7 +103,7 @@ static void fit(size_t i, const double bands[], Motion *m)
 
 Status synthetic_motion(Motion *m, size_t i, Err *err)
 {
-    const size_t n = (size_t)lround(SECONDS / DT_S) + 1;
+    const size_t n = lround(SECONDS / DT_S) + 1;
     double *e;
     TRY_ROOM(m->accel, n, "samples of a motion", err);
     if (!(e = calloc((SUITE_PERIODS + 1) * n, sizeof *e))) {
@@ -131,7 +113,16 @@ Status synthetic_motion(Motion *m, size_t i, Err *err)
     }
     m->n = n;
     m->dt_s = DT_S;
-    draw_envelope(i, n, e);
+
+    /* The envelope, zero at both ends. */
+    Random random = stream(i, OF_ENVELOPE);
+    const double rise = 2 + 3 * random_uniform(&random), stay = 4 + 8 * random_uniform(&random),
+                 decay = 3 + 3 * random_uniform(&random), taper = 6;
+    for (size_t k = 0; k < n; k++) {
+        const double t = (double)k * DT_S, over = t - rise - stay, left = SECONDS - t;
+        e[k] = (t < rise ? t * t / (rise * rise) : 1) * (over > 0 ? exp(-over / decay) : 1) *
+               (left < taper ? 0.5 - 0.5 * cos(M_PI * left / taper) : 1);
+    }
     make_bands(i, n, e, e + n);
     for (size_t j = 1; j <= SUITE_PERIODS; j++)
         end_at_rest(n, e, e + j * n);

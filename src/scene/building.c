@@ -2,6 +2,7 @@
 
 #include "base/hash.h"
 #include "base/linalg.h"
+#include "base/text.h"
 #include "base/units.h"
 #include "scene/building_read.h"
 #include "scene/reduction.h"
@@ -60,11 +61,10 @@ static Status check_units(const Building *b, const BuildingOptions *o, int is_ma
         return STATUS_OK;
     for (BuildingUnits u = BUILDING_N_M_KG; u <= BUILDING_KIP_IN; u++) {
         const BuildingUnit unit = building_unit(u);
-        const size_t used = strlen(fits);
         const double other = per_storey * sqrt(unit.mass / unit.stiffness), floor = unit.mass * mass;
         if (is_period(other) && (!is_right || (floor >= 1e3 && floor <= 1e7)))
-            snprintf(fits + used, sizeof fits - used, "%s%s (%.3g s per storey, floors of %.3g t)", used ? ", " : "",
-                     WORDS[u], other, floor / 1e3);
+            text_join(fits, sizeof fits, ", ", "%s (%.3g s per storey, floors of %.3g t)", WORDS[u], other,
+                      floor / 1e3);
     }
     if (fits[0])
         return bad_data(
@@ -83,7 +83,7 @@ static Status check_units(const Building *b, const BuildingOptions *o, int is_ma
 
 Status building_damp(Building *b, const BuildingOptions *o, Err *err)
 {
-    const BuildingModel *m = &b->model;
+    const BuildingModel *m = &b->model, *both[] = {&b->floors, m};
     const double *mode = o->rayleigh_modes.at;
     if (o->damping_model != DAMPING_RAYLEIGH) {
         if (o->damping.n > b->n)
@@ -102,10 +102,9 @@ Status building_damp(Building *b, const BuildingOptions *o, Err *err)
             return bad_data(err, "building.rayleigh_modes: %g is none of the %d modes", mode[i], b->n);
     const double w1 = b->omega[(int)mode[0] - 1], w2 = b->omega[(int)mode[1] - 1];
     const double mass = 2 * o->damping.at[0] * w1 * w2 / (w1 + w2), stiffness = 2 * o->damping.at[0] / (w1 + w2);
-    for (int i = 0; i < b->n; i++)
-        b->zeta[i] = 0.5 * (mass / b->omega[i] + stiffness * b->omega[i]);
-    for (int i = 0; i < m->n; i++)
-        m->zeta[i] = 0.5 * (mass / m->omega[i] + stiffness * m->omega[i]);
+    for (int k = 0; k < 2; k++)
+        for (int i = 0; i < both[k]->n; i++)
+            both[k]->zeta[i] = 0.5 * (mass / both[k]->omega[i] + stiffness * both[k]->omega[i]);
     return STATUS_OK;
 }
 
@@ -208,7 +207,7 @@ static Status find_yielding(Building *b, const double of_file[], const double K[
     }
     if (!b->yields)
         return STATUS_OK;
-    TRY_ROOM(phi, (2 * (size_t)n + 1) * n, "yielding storeys", err);
+    TRY_ROOM(phi, (2 * n + 1) * n, "yielding storeys", err);
     double *yields = phi + n * n, *omega = yields + n * n;
     Status status = linalg_modes(n, K, b->M, omega, phi, err);
 
@@ -264,14 +263,7 @@ static Status make_building(Building *b, const BuildingFiles *files, const Build
 
     /* The floors alone. */
     TRY(copy_matrices(m, &b->store, &files->floors, err));
-    b->n = m->n;
-    b->K = m->K;
-    b->M = m->M;
-    b->phi = m->phi;
-    b->omega = m->omega;
-    b->gamma = m->gamma;
-    b->zeta = m->zeta;
-    TRY_ROOM(b->storey_m, 3 * (size_t)b->n, "numbers of storeys", err);
+    TRY_ROOM(b->storey_m, 3 * b->n, "numbers of storeys", err);
     b->yield_m = b->storey_m + b->n;
     b->yield_n_m = b->yield_m + b->n;
     TRY(find_heights(b, files, o, err));
@@ -301,8 +293,7 @@ Status building_load(Building *b, const BuildingOptions *o, Err *err)
     BuildingFiles files;
     memset(b, 0, sizeof *b);
     Status s = building_read(&files, o, err);
-    if (s == STATUS_OK)
-        s = make_building(b, &files, o, err);
+    THEN(s, make_building(b, &files, o, err));
     building_files_free(&files);
     if (s != STATUS_OK)
         building_free(b);

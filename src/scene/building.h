@@ -61,12 +61,13 @@ static inline double building_shape(const BuildingModel *m, int j, double arm, i
 }
 
 typedef struct {
-    int n;               /* floors */
-    double *K, *M;       /* (n, n) [N/m], [kg] */
-    double *phi;         /* (n, n) column i is mode i [1/sqrt(kg)] */
-    double *omega;       /* (n) [rad/s] ascending */
-    double *gamma;       /* (n) [sqrt(kg)] */
-    double *zeta;        /* (n) [-] damping ratios of the modes */
+    union {
+        BuildingModel floors; /* alone, whose first fields are also those of the building: n is the number of floors */
+        struct {
+            int n;
+            double *K, *M, *phi, *omega, *gamma, *zeta;
+        };
+    };
     double *storey_m;    /* (n) heights */
     double *yield_m;     /* (n) [m] drift at which a storey yields; 0: it stays elastic */
     double *yield_n_m;   /* (n) [N/m] the part of its stiffness that then yields */
@@ -77,8 +78,7 @@ typedef struct {
     uint64_t hash;    /* FNV-1a of the numbers in the files */
     char note[400];   /* what of an OpenSees model was skipped; empty: nothing */
 
-    BuildingModel floors; /* the above */
-    BuildingModel model;  /* what is integrated: the above, or more */
+    BuildingModel model; /* what is integrated: the floors, or more */
     void *store, *model_store;
 } Building;
 

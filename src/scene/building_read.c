@@ -64,20 +64,8 @@ typedef struct {
 static const UnitWord WORDS[][5] = {{{"N/m", 1}, {"kN/m", 1e3}, {"MN/m", 1e6}, {"kip/in", KIP_PER_IN}, {NULL, 0}},
                                     {{"kg", 1}, {"t", 1e3}, {"kip", KIP_PER_IN}, {NULL, 0}}};
 
-/* The first of the words in a line; NULL: none of them. */
-static const UnitWord *unit_in(const char *line, const char *end, const UnitWord words[])
-{
-    for (const char *p = line; p <= end;) {
-        const Cell c = cell_next(&p, end, " ,;:=()[]");
-        for (const UnitWord *w = words; w->word; w++)
-            if (strlen(w->word) == (size_t)(c.to - c.from) && strncmp(c.from, w->word, strlen(w->word)) == 0)
-                return w;
-    }
-    return NULL;
-}
-
-/* What the entries of a matrix are multiplied by: as a comment of the file says, which building.units, `set`, must not
- * contradict. */
+/* What the entries of a matrix are multiplied by: as the first of the words in a comment of the file says, which
+ * building.units, `set`, must not contradict. */
 static Status matrix_factor(const BuildingOptions *o, const char *path, const UnitWord words[], double set,
                             double *factor, Err *err)
 {
@@ -88,8 +76,12 @@ static Status matrix_factor(const BuildingOptions *o, const char *path, const Un
     TRY(file_read(path, FILE_LARGEST, &text, &length, err));
     const Status status = lines_open(&l, path, text, length, err);
     while (status == STATUS_OK && !unit && lines_next(&l))
-        if (l.from < l.to && *l.from == '#')
-            unit = unit_in(l.from + 1, l.to, words);
+        for (const char *p = l.from + 1; l.from < l.to && *l.from == '#' && p <= l.to && !unit;) {
+            const Cell c = cell_next(&p, l.to, " ,;:=()[]");
+            for (const UnitWord *w = words; w->word && !unit; w++)
+                if (strlen(w->word) == (size_t)(c.to - c.from) && strncmp(c.from, w->word, strlen(w->word)) == 0)
+                    unit = w;
+        }
     free(text);
     *factor = unit ? unit->factor : set;
     return !unit || o->units == BUILDING_AUTO || unit->factor == set
@@ -103,15 +95,13 @@ static Status read_matrices(BuildingFiles *b, const BuildingOptions *o, Err *err
     static const char *const NAMES[] = {"K.csv", "M.csv"};
     const BuildingUnit unit = building_unit(o->units);
     Table t[2] = {0};
-    Status s = STATUS_OK;
-    for (int i = 0; i < 2 && s == STATUS_OK; i++)
-        s = model_table(&t[i], o->model, NAMES[i], TABLE_PLAIN, err);
-    for (int i = 0; i < 2 && s == STATUS_OK; i++)
-        s = check_matrix(&t[i], err);
+    Status s = model_table(&t[0], o->model, NAMES[0], TABLE_PLAIN, err);
+    THEN(s, model_table(&t[1], o->model, NAMES[1], TABLE_PLAIN, err));
+    THEN(s, check_matrix(&t[0], err));
+    THEN(s, check_matrix(&t[1], err));
     if (s == STATUS_OK && t[1].n_rows != t[0].n_rows)
         s = bad_data(err, "%s: %zu floors, but K.csv has %zu", t[1].path, t[1].n_rows, t[0].n_rows);
-    if (s == STATUS_OK)
-        s = frame_full_make(&b->floors, (int)t[0].n_rows, err);
+    THEN(s, frame_full_make(&b->floors, (int)t[0].n_rows, err));
     for (int i = 0; i < 2 && s == STATUS_OK; i++) {
         double *A = i ? b->floors.M : b->floors.K, factor = 1;
         if (!model_is_built_in(o->model))
@@ -127,7 +117,7 @@ static Status read_matrices(BuildingFiles *b, const BuildingOptions *o, Err *err
 static Status allocate(BuildingFiles *b, int n, Err *err)
 {
     TRY(frame_full_make(&b->floors, n, err));
-    TRY_ROOM(b->storey_m, 2 * (size_t)n, "floors", err);
+    TRY_ROOM(b->storey_m, 2 * n, "floors", err);
     b->yield_drift = b->storey_m + n;
     return STATUS_OK;
 }
@@ -135,12 +125,10 @@ static Status allocate(BuildingFiles *b, int n, Err *err)
 /* ---- storeys -------------------------------------------------------------------------------------------------- */
 
 typedef struct {
-    double height, mass, shear, bending, yield_drift; /* [m], [kg], [N/m], [N m2], [-]; 0: not given */
-} Storey;
-
-typedef struct {
-    int n;
-    Storey storey[FLOORS_MAX];
+    BuildingFiles *b; /* room is made at the first row */
+    int shears, bends;
+    Beam beam[FLOORS_MAX];
+    double mass_kg[FLOORS_MAX]; /* of the floors */
 } Storeys;
 
 /* Of two columns that differ by a factor of a thousand the one that is there. */
@@ -158,25 +146,33 @@ static const double HEIGHT_MIN_M = 0.1, HEIGHT_MAX_M = 100;
 static Status add_storey(void *storeys, const SheetRow *r, Err *err)
 {
     Storeys *all = storeys;
+    const int n = (int)r->n_rows, j = (int)r->row;
+    const double height = r->x[0];
+    double shear, bending;
     if (r->n_rows > FLOORS_MAX)
         return bad_data(err, "%zu storeys; at most %d are supported", r->n_rows, FLOORS_MAX);
-    Storey *storey = &all->storey[all->n++];
-    storey->height = r->x[0];
-    if (storey->height < HEIGHT_MIN_M || storey->height > HEIGHT_MAX_M)
-        return bad_data(err, "height_m is %g; a storey has %g to %g m: write metres", storey->height, HEIGHT_MIN_M,
+    if (height < HEIGHT_MIN_M || height > HEIGHT_MAX_M)
+        return bad_data(err, "height_m is %g; a storey has %g to %g m: write metres", height, HEIGHT_MIN_M,
                         HEIGHT_MAX_M);
-    TRY(choose(r, 1, "mass_kg and mass_t", &storey->mass, err));
-    TRY(choose(r, 3, "stiffness_n_m and stiffness_kn_m", &storey->shear, err));
-    TRY(choose(r, 5, "bending_n_m2 and bending_kn_m2", &storey->bending, err));
-    storey->yield_drift = r->x[7];
-    if (storey->yield_drift > 1)
-        return bad_data(err, "yield_drift is %g; it is drift over height, 1 at most", storey->yield_drift);
-    if (!(storey->mass > 0))
+    TRY(choose(r, 1, "mass_kg and mass_t", &all->mass_kg[j], err));
+    TRY(choose(r, 3, "stiffness_n_m and stiffness_kn_m", &shear, err));
+    TRY(choose(r, 5, "bending_n_m2 and bending_kn_m2", &bending, err));
+    if (r->x[7] > 1)
+        return bad_data(err, "yield_drift is %g; it is drift over height, 1 at most", r->x[7]);
+    if (!(all->mass_kg[j] > 0))
         return bad_data(err, "has no mass_kg or mass_t");
-    const Storey *first = all->storey;
-    if ((storey->shear > 0) != (first->shear > 0) || (storey->bending > 0) != (first->bending > 0))
+    if (j == 0) {
+        TRY(allocate(all->b, n, err));
+        all->shears = shear > 0;
+        all->bends = bending > 0;
+    }
+    if ((shear > 0) != all->shears || (bending > 0) != all->bends)
         return bad_data(err, "stiffness or bending is empty here and not in the row of the first storey");
-    return storey->shear > 0 || storey->bending > 0
+    all->b->storey_m[j] = height;
+    all->b->yield_drift[j] = r->x[7];
+    all->beam[j] = (Beam){.EI = bending, .kGA = shear * height, .length = height};
+    storey_spring(n, j, all->bends ? 0 : shear, all->b->floors.K);
+    return all->shears || all->bends
                ? STATUS_OK
                : bad_data(err, "has no stiffness_n_m, stiffness_kn_m, bending_n_m2 or bending_kn_m2");
 }
@@ -205,25 +201,14 @@ void storey_spring(int n, int j, double spring, double K[])
 /* Makes the matrices of a shear building, or of a cantilever where storeys bend. */
 static Status read_storeys(BuildingFiles *b, const char *folder, Err *err)
 {
-    Storeys all = {0};
-    Beam beam[FLOORS_MAX];
+    Storeys all = {.b = b};
     TRY(sheet_read(&STOREYS, folder, &all, err));
-    const int n = all.n;
-    TRY(allocate(b, n, err));
-    for (int j = 0; j < n; j++) {
-        const Storey *s = &all.storey[j];
-        beam[j] = (Beam){.EI = s->bending, .kGA = s->shear * s->height, .length = s->height};
-    }
-    if (all.storey[0].bending > 0)
-        TRY(beam_cantilever(n, beam, NULL, b->floors.K, b->floors.M, err));
-    for (int j = 0; j < n && all.storey[0].bending == 0; j++)
-        storey_spring(n, j, all.storey[j].shear, b->floors.K);
+    const int n = b->floors.n;
+    if (all.bends)
+        TRY(beam_cantilever(n, all.beam, NULL, b->floors.K, b->floors.M, err));
     memset(b->floors.M, 0, n * n * sizeof *b->floors.M);
-    for (int j = 0; j < n; j++) {
-        b->floors.M[j * n + j] = all.storey[j].mass;
-        b->storey_m[j] = all.storey[j].height;
-        b->yield_drift[j] = all.storey[j].yield_drift;
-    }
+    for (int j = 0; j < n; j++)
+        b->floors.M[j * n + j] = all.mass_kg[j];
     return STATUS_OK;
 }
 
@@ -278,12 +263,14 @@ int building_reads(const char *name)
     return k < KINDS || frame_reads(name);
 }
 
-/* Is there one kind of model? */
-static Status check_kind(const char *folder, int has[KINDS], Err *err)
+Status building_read(BuildingFiles *b, const BuildingOptions *o, Err *err)
 {
-    const char *found[KINDS + 1] = {0};
-    int n = 0;
-    for (int k = 0; k < KINDS; k++) {
+    const char *folder = o->model, *found[KINDS + 1] = {0};
+    int has[KINDS] = {0}, n = 0;
+    memset(b, 0, sizeof *b);
+
+    /* Is there one kind of model? */
+    for (int k = 0; k < KINDS && !model_is_built_in(folder); k++) {
         has[k] = k == KIND_FRAME ? frame_is(folder) : model_has(folder, FILES[k]);
         if (has[k] && !(k == KIND_M && has[KIND_K]))
             found[n++] = FILES[k];
@@ -291,29 +278,20 @@ static Status check_kind(const char *folder, int has[KINDS], Err *err)
     if (n > 1)
         return bad_data(err, "%s: holds %s and %s, two kinds of model; leave one of them there", folder, found[0],
                         found[1]);
-    if (n == 0 && access(folder, F_OK) == 0)
+    if (n == 0 && !model_is_built_in(folder) && access(folder, F_OK) == 0)
         return fail(
             err, STATUS_MISSING,
             "%s: holds no building: K.csv and M.csv, or storeys.csv, or nodes.csv, sections.csv and elements.csv",
             folder);
-    return STATUS_OK;
-}
-
-Status building_read(BuildingFiles *b, const BuildingOptions *o, Err *err)
-{
-    int has[KINDS] = {0};
-    memset(b, 0, sizeof *b);
-    if (!model_is_built_in(o->model))
-        TRY(check_kind(o->model, has, err));
     TRY(has[KIND_FRAME]     ? read_frame(b, o, err)
-        : has[KIND_STOREYS] ? read_storeys(b, o->model, err)
+        : has[KIND_STOREYS] ? read_storeys(b, folder, err)
                             : read_matrices(b, o, err));
     if (o->modes == 0 || b->full.n)
         return STATUS_OK;
-    if (!frame_is(o->model))
+    if (!frame_is(folder))
         return bad_data(err,
                         "building.modes: %s has no more than its floors; only a plane frame (nodes.csv) and guyan have",
-                        o->model);
+                        folder);
     return read_frame(b, o, err);
 }
 

@@ -35,14 +35,23 @@ void beam_element(const Beam *b, double k[4][4], double m[4][4])
 
 /* ---- cantilever ----------------------------------------------------------------------------------------------- */
 
-/* Unknowns: deflections 0..n-1, rotations n..2n-1, then those of the base that is not fixed: rotation, translation. */
-static void assemble(int n, const Beam beam[], const Foundation *base, int size, double K[], double M[])
+Status beam_cantilever(int n, const Beam beam[], const Foundation *base, double K[], double M[], Err *err)
 {
-    const int turns = base && base->rotation > 0 ? 2 * n : -1, moves = base && base->translation > 0 ? size - 1 : -1;
-    if (turns >= 0)
-        K[turns * size + turns] = base->rotation;
-    if (moves >= 0)
-        K[moves * size + moves] = base->translation;
+    const int has_turn = base && base->rotation > 0, has_move = base && base->translation > 0;
+    const int slaves = n + has_turn + has_move;
+    const size_t size = n + slaves, nn = n * (size_t)n, rn = slaves * (size_t)n;
+    double *whole_K;
+    TRY_ROOM(whole_K, 2 * size * size + slaves * slaves + nn + rn + size * n, "numbers of a core", err);
+    double *whole_M = whole_K + size * size, *Krr = whole_M + size * size, *T = Krr + slaves * slaves, *R = T + nn,
+           *work = R + rn;
+
+    /* Unknowns: deflections 0..n-1, rotations n..2n-1, then those of the base that is not fixed: rotation,
+     * translation. */
+    const int turns = has_turn ? 2 * n : -1, moves = has_move ? (int)size - 1 : -1;
+    if (has_turn)
+        whole_K[turns * size + turns] = base->rotation;
+    if (has_move)
+        whole_K[moves * size + moves] = base->translation;
     for (int e = 0; e < n; e++) {
         double k[4][4], m[4][4];
         beam_element(&beam[e], k, m);
@@ -50,21 +59,12 @@ static void assemble(int n, const Beam beam[], const Foundation *base, int size,
         for (int i = 0; i < 4; i++)
             for (int j = 0; j < 4; j++)
                 if (at[i] >= 0 && at[j] >= 0) {
-                    K[at[i] * size + at[j]] += k[i][j];
-                    M[at[i] * size + at[j]] += m[i][j];
+                    whole_K[at[i] * size + at[j]] += k[i][j];
+                    whole_M[at[i] * size + at[j]] += m[i][j];
                 }
     }
-}
 
-Status beam_cantilever(int n, const Beam beam[], const Foundation *base, double K[], double M[], Err *err)
-{
-    const int slaves = n + (base && base->rotation > 0) + (base && base->translation > 0);
-    const size_t size = n + slaves, nn = n * (size_t)n, rn = slaves * (size_t)n;
-    double *whole_K;
-    TRY_ROOM(whole_K, 2 * size * size + slaves * slaves + nn + rn + size * n, "numbers of a core", err);
-    double *whole_M = whole_K + size * size, *Krr = whole_M + size * size, *T = Krr + slaves * slaves, *R = T + nn,
-           *work = R + rn;
-    assemble(n, beam, base, (int)size, whole_K, whole_M);
+    /* Condensed to the deflections. */
     for (int i = 0; i < n; i++)
         T[i * n + i] = 1;
     for (int i = 0; i < slaves; i++) {
@@ -176,15 +176,6 @@ double core_beam_anchor(const CoreBeam *c)
 /* [s] A dashpot that gives way sooner than this is none. */
 static const double DASHPOT_FELT_S = 1e-4;
 
-/* share: of a rigid rotation that the base takes, a / (K + a) (scene/uplift.h). */
-static Uplift uplift_of(const CoreBeam *c, double share)
-{
-    const Foundation *f = &c->base;
-    const double K = f->rotation, whole = K / (1 - share), C = f->rotation_dashpot;
-    const double moment = f->anchors * foundation_uplift_nm(f, core_beam_weight(c));
-    return (Uplift){moment / K, K, whole, C > DASHPOT_FELT_S * whole ? C : 0, f->cone_s};
-}
-
 Status core_beam_make(CoreBeam *c, const CoreOptions *o, int n, const double storey_m[], double t_base_m,
                       double t_top_m, Err *err)
 {
@@ -220,13 +211,18 @@ Status core_beam_make(CoreBeam *c, const CoreOptions *o, int n, const double sto
             c->base_translation[i] += base->translation > 0 ? c->K[j * n + i] / base->translation : 0;
         }
     }
+    for (int i = 0; i < n; i++)
+        c->zeta[i] = o->damping + core_beam_base_loss(c, c->omega[i], c->phi + i, n) / (2 * c->omega[i]);
+
+    /* share: of a rigid rotation that the base takes, a / (K + a) (scene/uplift.h). */
     z = 0;
     for (int j = 0; j < n; j++)
         share += c->base_rotation[j] * (z += storey_m[j]);
-    if (base->anchors > 0)
-        c->uplift = uplift_of(c, share);
-    for (int i = 0; i < n; i++)
-        c->zeta[i] = o->damping + core_beam_base_loss(c, c->omega[i], c->phi + i, n) / (2 * c->omega[i]);
+    if (base->anchors > 0) {
+        const double K = base->rotation, whole = K / (1 - share), C = base->rotation_dashpot;
+        const double moment = base->anchors * foundation_uplift_nm(base, core_beam_weight(c));
+        c->uplift = (Uplift){moment / K, K, whole, C > DASHPOT_FELT_S * whole ? C : 0, base->cone_s};
+    }
     return STATUS_OK;
 }
 

@@ -11,60 +11,59 @@ _Static_assert((int)N_GROUPS == DESIGN_GROUPS, "a count for each group");
 /* A group by floors or zones has a unit, and its names are made of the first one and that; gaps have one for each of
  * GAPS_BOTH, GAPS_LEFT, GAPS_RIGHT. Of other groups all names stand there. */
 static const struct {
-    const char *word; /* of design.variables */
     const char *name[3], *unit;
     int n;            /* variables where there is no unit */
     const char *must; /* what a value has to be */
 } GROUPS[N_GROUPS] = {
-    [GAP] = {"gaps", {"gap", "gap_left", "gap_right"}, "_m", 0, "a gap is not negative"},
-    [WALL] = {"thickness", {"t_base_m", "t_top_m"}, NULL, 2, "a thickness must be above 0"},
-    [BUMPER] =
-        {"bumper", {"bumper"}, "_log10_n_m", 0, "it is the decimal logarithm of a stiffness in N/m, 8 for 1e8 N/m"},
-    [SIDE] = {"side", {"side_m"}, NULL, 1, "it must be above 0"},
-    [ANCHOR] = {"anchors", {"anchors"}, NULL, 1, "it must be 1, weight alone, or more"},
-    [LINK] = {"links", {"link"}, "_n_s_m", 0, "a dashpot is not negative; 0: there is none"},
-    [SLIP] = {"friction", {"friction"}, "_n", 0, "a force is not negative; 0: there is none"},
-    [MASS] = {"tuned_mass", {"tuned_mass_kg", "tuned_mass_hz", "tuned_mass_damping"}, NULL, 3, "it must be above 0"},
-    [DEVICE] = {NULL, {"device"}, "", 0, "it is the place, from 0, of a word of design.devices"},
-    [ROOF] = {NULL, {"device_roof"}, NULL, 1, "it is 0 for a tuned mass, 1 for none"},
+    [GAP] = {{"gap", "gap_left", "gap_right"}, "_m", 0, "a gap is not negative"},
+    [WALL] = {{"t_base_m", "t_top_m"}, NULL, 2, "a thickness must be above 0"},
+    [BUMPER] = {{"bumper"}, "_log10_n_m", 0, "it is the decimal logarithm of a stiffness in N/m, 8 for 1e8 N/m"},
+    [SIDE] = {{"side_m"}, NULL, 1, "it must be above 0"},
+    [ANCHOR] = {{"anchors"}, NULL, 1, "it must be 1, weight alone, or more"},
+    [LINK] = {{"link"}, "_n_s_m", 0, "a dashpot is not negative; 0: there is none"},
+    [SLIP] = {{"friction"}, "_n", 0, "a force is not negative; 0: there is none"},
+    [MASS] = {{"tuned_mass_kg", "tuned_mass_hz", "tuned_mass_damping"}, NULL, 3, "it must be above 0"},
+    [DEVICE] = {{"device"}, "", 0, "it is the place, from 0, of a word of design.devices"},
+    [ROOF] = {{"device_roof"}, NULL, 1, "it is 0 for a tuned mass, 1 for none"},
 };
 
-/* The words of design.variables as a set of groups. */
-static Status read_variables(const char *list, unsigned *set, Err *err)
+enum { WORDS_MAX = DEVICE };
+typedef struct {
+    const char *key, *noun;
+    int n;
+    const char *word[WORDS_MAX];
+} Words;
+
+/* In the order of Group. */
+static const Words VARIABLES = {"design.variables",
+                                "variable",
+                                DEVICE,
+                                {"gaps", "thickness", "bumper", "side", "anchors", "links", "friction", "tuned_mass"}};
+
+/* In the order of FloorDevice. */
+static const Words DEVICES = {
+    "design.devices", "device", N_FLOOR_DEVICES, {"gap", "bumper", "link", "friction", "none"}};
+
+/* The places of the words of a comma list, in its order, each at most once. */
+static Status read_words(const Words *w, const char *list, int places[WORDS_MAX], int *n, Err *err)
 {
-    static const Group LISTED[] = {GAP, WALL, BUMPER, SIDE, ANCHOR, LINK, MASS, SLIP};
-    enum { N = N_OF(LISTED) };
-    const char *words[N];
     char word[64];
-    *set = 0;
-    for (int k = 0; k < N; k++)
-        words[k] = GROUPS[LISTED[k]].word;
-    for (size_t i = 0; i < list_count(list); i++) {
+    for (*n = 0; *n < (int)list_count(list); ++*n) {
         int k = 0;
-        if (!list_item(list, i, word, sizeof word))
-            return bad_data(err, "design.variables: item %zu is empty or too long", i + 1);
-        if (strcmp(word, "symmetric") == 0)
-            return bad_data(
-                err, "design.variables: 'symmetric' is no choice: leave the word out; design.gap_sides = both makes "
-                     "every gap the same on both sides");
-        while (k < N && strcmp(words[k], word) != 0)
+        if (!list_item(list, *n, word, sizeof word))
+            return bad_data(err, "%s: item %d is empty or too long", w->key, *n + 1);
+        while (k < w->n && strcmp(w->word[k], word) != 0)
             k++;
-        if (k == N)
-            return fail_no_word(err, STATUS_BAD_DATA, "design.variables", word, "variable", words, N);
-        if (*set >> LISTED[k] & 1)
-            return bad_data(err, "design.variables: %s stands there twice", word);
-        *set |= 1U << LISTED[k];
+        if (k == w->n)
+            return fail_no_word(err, STATUS_BAD_DATA, w->key, word, w->noun, w->word, w->n);
+        for (int i = 0; i < *n; i++)
+            if (places[i] == k)
+                return bad_data(err, "%s: %s stands there twice", w->key, word);
+        places[*n] = k;
     }
-    return *set >> GAP & *set >> WALL & 1
-               ? STATUS_OK
-               : bad_data(err, "design.variables: gaps and thickness are always there; add to them");
+    return STATUS_OK;
 }
 
-static const char *const FLOOR_WORDS[] = {[FLOOR_GAP] = "gap",
-                                          [FLOOR_BUMPER] = "bumper",
-                                          [FLOOR_LINK] = "link",
-                                          [FLOOR_FRICTION] = "friction",
-                                          [FLOOR_NONE] = "none"};
 enum { ROOF_MASS, ROOF_NONE, N_ROOF_DEVICES };
 static const char *const ROOF_WORDS[] = {[ROOF_MASS] = "tuned_mass", [ROOF_NONE] = "none"};
 
@@ -74,25 +73,17 @@ static Status read_devices(DesignSpace *s, const DesignOptions *o, unsigned set,
     /* What says how large a device is; there always are gaps. */
     static const Group NEEDS[] = {
         [FLOOR_BUMPER] = BUMPER, [FLOOR_LINK] = LINK, [FLOOR_FRICTION] = SLIP, [FLOOR_NONE] = GAP};
-    char word[64] = "";
-    unsigned seen = 0;
-    for (size_t i = 0; o->devices[0] && strcmp(o->devices, "all") != 0 && i < list_count(o->devices); i++) {
-        int k = 0;
-        const int is_word = list_item(o->devices, i, word, sizeof word);
-        while (k < N_FLOOR_DEVICES && strcmp(FLOOR_WORDS[k], word) != 0)
-            k++;
-        if (!is_word || k == N_FLOOR_DEVICES)
-            return fail_no_word(err, STATUS_BAD_DATA, "design.devices", word, "device", FLOOR_WORDS, N_FLOOR_DEVICES);
-        if (seen >> k & 1)
-            return bad_data(err, "design.devices: %s stands there twice", word);
-        if (!(set >> NEEDS[k] & 1))
-            return bad_data(err, "design.devices: %s: add %s to design.variables, which says how large it is", word,
-                            GROUPS[NEEDS[k]].word);
-        seen |= 1U << k;
-        s->word[s->n_words++] = (FloorDevice)k;
+    int places[WORDS_MAX];
+    if (o->devices[0] && strcmp(o->devices, "all") != 0)
+        TRY(read_words(&DEVICES, o->devices, places, &s->n_words, err));
+    for (int i = 0; i < s->n_words; i++) {
+        s->word[i] = (FloorDevice)places[i];
+        if (!(set >> NEEDS[places[i]] & 1))
+            return bad_data(err, "design.devices: %s: add %s to design.variables, which says how large it is",
+                            DEVICES.word[places[i]], VARIABLES.word[NEEDS[places[i]]]);
     }
     if (s->n_words == 1)
-        return bad_data(err, "design.devices: %s alone is no choice; name two or more, or all", word);
+        return bad_data(err, "design.devices: %s alone is no choice; name two or more, or all", o->devices);
     if (s->n_words == 0 && set >> LINK & set >> SLIP & 1)
         return bad_data(err,
                         "design.variables: a floor has links or friction; design.devices = link, friction chooses");
@@ -106,9 +97,14 @@ Status design_space_make(DesignSpace *s, const DesignOptions *o, CoreSection sec
                                   [LINK] = o->link_zones,
                                   [SLIP] = o->link_zones,
                                   [DEVICE] = o->device_zones};
-    unsigned set = 1U << GAP | 1U << WALL;
+    unsigned set = 0;
+    int places[WORDS_MAX] = {GAP, WALL}, n_named = 2;
     if (o->variables[0])
-        TRY(read_variables(o->variables, &set, err));
+        TRY(read_words(&VARIABLES, o->variables, places, &n_named, err));
+    for (int i = 0; i < n_named; i++)
+        set |= 1U << places[i];
+    if (!(set >> GAP & set >> WALL & 1))
+        return bad_data(err, "design.variables: gaps and thickness are always there; add to them");
     *s = (DesignSpace){.n_floors = n_floors, .gap_sides = o->gap_sides};
     for (int g = 0; g < N_GROUPS; g++) {
         const int by_floor = GROUPS[g].unit != NULL;
@@ -178,7 +174,7 @@ const char *design_word(const DesignSpace *s, int j, double x)
 {
     const Group group = group_of(s, &j);
     if (group == DEVICE)
-        return x >= 0 && x < s->n_words ? FLOOR_WORDS[s->word[(int)x]] : NULL;
+        return x >= 0 && x < s->n_words ? DEVICES.word[s->word[(int)x]] : NULL;
     return group == ROOF && x >= 0 && x < N_ROOF_DEVICES ? ROOF_WORDS[(int)x] : NULL;
 }
 
@@ -369,26 +365,17 @@ Status design_cell(const DesignSpace *s, int j, const Table *t, size_t row, doub
     return fail_no_word(err, STATUS_BAD_DATA, where, text, "device", words, n);
 }
 
-/* Numbers in the place of words; other columns keep those that they have. */
-static Status number_words(Table *t, const DesignSpace *s, Err *err)
+Status design_table_read(Table *t, const char *path, const DesignSpace *s, Err *err)
 {
     char name[TABLE_NAME_MAX];
-    TRY_ROOM(t->values, t->n_rows * t->n_cols + 1, "numbers", err);
-    for (size_t i = 0; i < t->n_rows * t->n_cols; i++)
-        t->values[i] = strtod(t->text + t->cell[i], NULL);
-    for (int j = 0; j < s->n_var; j++) {
+    TRY(table_read(t, path, s->n_choices > 0 ? TABLE_WORDS : TABLE_HEADED, err));
+    Status status = STATUS_OK;
+    for (int j = 0; j < s->n_var && s->n_choices > 0; j++) {
         design_variable_name(s, j, name);
         const int column = table_column(t, name);
         for (size_t i = 0; column >= 0 && i < t->n_rows; i++)
-            TRY(design_cell(s, j, t, i, &t->values[i * t->n_cols + (size_t)column], err));
+            THEN(status, design_cell(s, j, t, i, &t->values[i * t->n_cols + column], err));
     }
-    return STATUS_OK;
-}
-
-Status design_table_read(Table *t, const char *path, const DesignSpace *space, Err *err)
-{
-    TRY(table_read(t, path, space->n_choices > 0 ? TABLE_WORDS : TABLE_HEADED, err));
-    const Status status = space->n_choices > 0 ? number_words(t, space, err) : STATUS_OK;
     if (status != STATUS_OK)
         table_free(t);
     return status;

@@ -1,6 +1,7 @@
 #include "scene/foundation.h"
 
 #include "base/keyed.h"
+#include "base/text.h"
 
 enum {
     SOIL,
@@ -93,11 +94,10 @@ Status foundation_parse(const char *text, double factor, Foundation *f, Err *err
 double foundation_complete(char text[OPTION_TEXT_MAX], int is_stored)
 {
     Foundation f;
-    const size_t n = strlen(text);
     if (foundation_parse(text, 1, &f, NULL) != STATUS_OK)
         return 0;
     if (!is_stored && f.radius_m > 0 && f.rotation > 0 && !strstr(text, "anchors="))
-        snprintf(text + n, OPTION_TEXT_MAX - n, " anchors=1");
+        text_join(text, OPTION_TEXT_MAX, " ", "anchors=1");
     return f.anchors;
 }
 

@@ -56,25 +56,12 @@ static Status add_part(Frame *f, FrameKind kind, void *list, const void *part, s
     return STATUS_OK;
 }
 
-static Status check_mass(const double mass[FRAME_DOFS], Err *err)
-{
-    for (int d = 0; d < FRAME_DOFS; d++)
-        if (!(mass[d] >= 0))
-            return bad_data(err, "a mass of %g; it must not be negative", mass[d]);
-    return STATUS_OK;
-}
-
-Status frame_set_mass(Frame *f, int node, const double mass[FRAME_DOFS], Err *err)
-{
-    TRY(check_mass(mass, err));
-    memcpy(f->node[node].mass, mass, sizeof f->node[node].mass);
-    return STATUS_OK;
-}
-
 Status frame_add_node(Frame *f, const FrameNode *node, Err *err)
 {
     const int i = f->n[FRAME_NODES];
-    TRY(check_mass(node->mass, err));
+    for (int d = 0; d < FRAME_DOFS; d++)
+        if (!(node->mass[d] >= 0))
+            return bad_data(err, "a mass of %g; it must not be negative", node->mass[d]);
     TRY(add_part(f, FRAME_NODES, &f->node, node, sizeof *node, err));
     for (int d = 0; d < FRAME_DOFS; d++)
         f->node[i].follows[d] = i;
@@ -93,10 +80,11 @@ Status frame_add_section(Frame *f, const FrameSection *s, Err *err)
 
 Status frame_add_element(Frame *f, const FrameElement *e, Err *err)
 {
-    const FrameNode *a = &f->node[e->node[0]], *b = &f->node[e->node[1]];
-    if (!e->is_spring &&
-        !(hypot(b->x + e->offset[1][0] - a->x - e->offset[0][0], b->z + e->offset[1][1] - a->z - e->offset[0][1]) > 0))
-        return bad_data(err, "element %s has no length: nodes %s and %s are at one place", e->name, a->name, b->name);
+    double span[2];
+    frame_span(f, e, span);
+    if (!e->is_spring && !(hypot(span[0], span[1]) > 0))
+        return bad_data(err, "element %s has no length: nodes %s and %s are at one place", e->name,
+                        f->node[e->node[0]].name, f->node[e->node[1]].name);
     return add_part(f, FRAME_ELEMENTS, &f->element, e, sizeof *e, err);
 }
 
@@ -186,11 +174,30 @@ int frame_floor_node(const Frame *f, int floor)
     return best;
 }
 
-/* Storey heights: between the mean heights of the nodes of floors; the first one is above the highest node that is held
- * sideways below it. */
-static Status measure_storeys(Frame *f, const char *model, Err *err)
+Status frame_find_floors(Frame *f, const char *model, int rigid, Err *err)
 {
+    int named = 0;
     double below = -HUGE_VAL;
+    for (int i = 0; i < f->n[FRAME_NODES]; i++)
+        named |= f->node[i].floor;
+    if (!named)
+        TRY(number_floors(f, err));
+    for (int i = 0; i < f->n[FRAME_NODES]; i++)
+        f->n_floors = MAX_OF(f->node[i].floor, f->n_floors);
+    if (f->n_floors == 0)
+        return bad_data(err, "%s: no floors: no level element has ends that may move sideways", model);
+    if (f->n_floors > FLOORS_MAX)
+        return bad_data(err, "%s: %d floors; at most %d are supported", model, f->n_floors, FLOORS_MAX);
+    TRY_ROOM(f->storey_m, f->n_floors, "storeys of a frame", err);
+    for (int floor = 1; floor <= f->n_floors && rigid; floor++) {
+        const int first = frame_floor_node(f, floor);
+        for (int i = 0; i < f->n[FRAME_NODES]; i++)
+            if (f->node[i].floor == floor)
+                f->node[frame_followed(f, i, FRAME_X)].follows[FRAME_X] = frame_followed(f, first, FRAME_X);
+    }
+
+    /* Storey heights: between the mean heights of the nodes of floors; the first one is above the highest node that is
+     * held sideways below it. */
     for (int k = 1; k <= f->n_floors; k++) {
         int count = 0;
         double z = 0;
@@ -213,27 +220,4 @@ static Status measure_storeys(Frame *f, const char *model, Err *err)
         below = z;
     }
     return STATUS_OK;
-}
-
-Status frame_find_floors(Frame *f, const char *model, int rigid, Err *err)
-{
-    int named = 0;
-    for (int i = 0; i < f->n[FRAME_NODES]; i++)
-        named |= f->node[i].floor;
-    if (!named)
-        TRY(number_floors(f, err));
-    for (int i = 0; i < f->n[FRAME_NODES]; i++)
-        f->n_floors = MAX_OF(f->node[i].floor, f->n_floors);
-    if (f->n_floors == 0)
-        return bad_data(err, "%s: no floors: no level element has ends that may move sideways", model);
-    if (f->n_floors > FLOORS_MAX)
-        return bad_data(err, "%s: %d floors; at most %d are supported", model, f->n_floors, FLOORS_MAX);
-    TRY_ROOM(f->storey_m, f->n_floors, "storeys of a frame", err);
-    for (int floor = 1; floor <= f->n_floors && rigid; floor++) {
-        const int first = frame_floor_node(f, floor);
-        for (int i = 0; i < f->n[FRAME_NODES]; i++)
-            if (f->node[i].floor == floor)
-                f->node[frame_followed(f, i, FRAME_X)].follows[FRAME_X] = frame_followed(f, first, FRAME_X);
-    }
-    return measure_storeys(f, model, err);
 }

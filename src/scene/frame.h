@@ -89,7 +89,14 @@ Status frame_add_node(Frame *f, const FrameNode *node, Err *err);
 Status frame_add_section(Frame *f, const FrameSection *section, Err *err);
 Status frame_add_element(Frame *f, const FrameElement *element, Err *err);
 Status frame_tie(Frame *f, int node, int same_as, const int dof[FRAME_DOFS], Err *err);
-Status frame_set_mass(Frame *f, int node, const double mass[FRAME_DOFS], Err *err);
+
+/* [m] From the first end of an element to the second, along x and along z. */
+static inline void frame_span(const Frame *f, const FrameElement *e, double span[2])
+{
+    const FrameNode *a = &f->node[e->node[0]], *b = &f->node[e->node[1]];
+    span[0] = b->x + e->offset[1][0] - a->x - e->offset[0][0];
+    span[1] = b->z + e->offset[1][1] - a->z - e->offset[0][1];
+}
 
 /* Index of what has that name; -1: nothing has. */
 int frame_find(const Frame *f, FrameKind kind, const char *name);

@@ -5,11 +5,6 @@
 
 /* ---- rows ----------------------------------------------------------------------------------------------------- */
 
-static void set_name(char name[TABLE_NAME_MAX], const char *word)
-{
-    snprintf(name, TABLE_NAME_MAX, "%s", word);
-}
-
 static void set_switches(int on[FRAME_DOFS], const double x[FRAME_DOFS])
 {
     for (int d = 0; d < FRAME_DOFS; d++)
@@ -28,7 +23,7 @@ static Status look_up(const Frame *f, FrameKind kind, const char *column, const 
 static Status add_node(void *frame, const SheetRow *r, Err *err)
 {
     FrameNode node = {.x = r->x[1], .z = r->x[2], .floor = (int)fmin(r->x[6], 1e6)};
-    set_name(node.name, r->word[0]);
+    snprintf(node.name, sizeof node.name, "%s", r->word[0]);
     set_switches(node.fixed, &r->x[3]);
     set_switches(node.keep, &r->x[7]);
     if (node.floor != r->x[6])
@@ -45,7 +40,7 @@ static Status add_section(void *frame, const SheetRow *r, Err *err)
                             .shear_area = r->x[4],
                             .poisson = r->x[5],
                             .mass_per_m = r->x[6]};
-    set_name(section.name, r->word[0]);
+    snprintf(section.name, sizeof section.name, "%s", r->word[0]);
     return frame_add_section(frame, &section, err);
 }
 
@@ -53,7 +48,7 @@ static Status add_section(void *frame, const SheetRow *r, Err *err)
 static Status add_element(void *frame, const SheetRow *r, Err *err)
 {
     FrameElement e = {.pinned = {(int)r->x[4], (int)r->x[5]}, .added_mass = r->x[6]};
-    set_name(e.name, r->word[0]);
+    snprintf(e.name, sizeof e.name, "%s", r->word[0]);
     TRY(look_up(frame, FRAME_NODES, "node_i", r->word[1], &e.node[0], err));
     TRY(look_up(frame, FRAME_NODES, "node_j", r->word[2], &e.node[1], err));
     TRY(look_up(frame, FRAME_SECTIONS, "section", r->word[3], &e.section, err));
@@ -65,10 +60,11 @@ static Status add_mass(void *frame, const SheetRow *r, Err *err)
 {
     int node;
     TRY(look_up(frame, FRAME_NODES, "node", r->word[0], &node, err));
-    const double *has = ((Frame *)frame)->node[node].mass;
-    return frame_set_mass(
-        frame, node,
-        (double[]){has[FRAME_X] + r->x[1], has[FRAME_Z] + r->x[*r->word[2] ? 2 : 1], has[FRAME_ROT] + r->x[3]}, err);
+    double *mass = ((Frame *)frame)->node[node].mass; /* no column of the sheet may be negative */
+    mass[FRAME_X] += r->x[1];
+    mass[FRAME_Z] += r->x[*r->word[2] ? 2 : 1];
+    mass[FRAME_ROT] += r->x[3];
+    return STATUS_OK;
 }
 
 static Status add_tie(void *frame, const SheetRow *r, Err *err)

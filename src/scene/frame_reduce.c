@@ -71,10 +71,7 @@ static void element_matrices(const Frame *f, int element, const int number[], in
 {
     const FrameElement *e = &f->element[element];
     const FrameSection *s = &f->section[e->section];
-    const FrameNode *a = &f->node[e->node[0]], *b = &f->node[e->node[1]];
-    const double dx = b->x + e->offset[1][0] - a->x - e->offset[0][0],
-                 dz = b->z + e->offset[1][1] - a->z - e->offset[0][1], l = hypot(dx, dz);
-    double bend[4][4], sway[4][4];
+    double bend[4][4], sway[4][4], span[2];
     for (int i = 0; i < LOCAL; i++)
         at[i] = number[displacement_of(e, i)];
     if (e->is_spring) {
@@ -86,7 +83,9 @@ static void element_matrices(const Frame *f, int element, const int number[], in
         join_and_turn(halves, half, 0, e->axis, e->offset, m);
         return;
     }
-    const double axis[2] = {dx / l, dz / l}, axial = s->E * s->area / l, mass = s->mass_per_m * l + e->added_mass;
+    frame_span(f, e, span);
+    const double l = hypot(span[0], span[1]), axis[2] = {span[0] / l, span[1] / l}, axial = s->E * s->area / l,
+                 mass = s->mass_per_m * l + e->added_mass;
     beam_element(&(Beam){.EI = s->E * s->inertia,
                          .kGA = s->E / (2 * (1 + s->poisson)) * s->shear_area,
                          .mass_per_m = mass / l,

@@ -1,8 +1,10 @@
 #include "scene/neighbour.h"
 
+#include "base/list.h"
+
 int neighbour_is_given(const CoreOptions *o)
 {
-    return o->model[0] && strcmp(o->model, "none") != 0;
+    return list_is_given(o->model);
 }
 
 CoreSection core_section(const CoreOptions *o)
@@ -55,7 +57,7 @@ Status core_make(CoreBeam *c, const CoreOptions *o, const BuildingOptions *of, c
     c->n = b->n;
     c->top = n.n;
     c->mass_kg = building_mass(&n);
-    memcpy(c->storey_m, n.storey_m, (size_t)n.n * sizeof *c->storey_m);
+    memcpy(c->storey_m, n.storey_m, n.n * sizeof *c->storey_m);
     for (int i = 0; i < b->n && status == STATUS_OK; i++) {
         const int own = i < n.n;
         c->omega[i] = n.omega[own ? i : n.n - 1];

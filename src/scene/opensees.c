@@ -48,19 +48,6 @@ static int run_reader(const char *program, char *const words[], int file, int *h
     return why;
 }
 
-/* Why there is no answer. */
-static Status fail_at_line(const char *path, int file, int how, Err *err)
-{
-    char line[UNDER_WAY_MAX] = "";
-    const int sign = WIFSIGNALED(how) ? WTERMSIG(how) : 0;
-    if (pread(file, line, sizeof line - 1, 0) <= 0 || !line[0])
-        snprintf(line, sizeof line, "%.400s", path);
-    if (sign == SIGALRM || sign == SIGXCPU)
-        return bad_data(err, "%s: takes more than %d s", line, OPENSEES_SECONDS);
-    return bad_data(err, "%s: needs more than 1 GB or fills the stack; the program that read the model was ended (%s)",
-                    line, sign ? strsignal(sign) : "exit");
-}
-
 /* The frame of an answer, part by part. */
 static Status take_frame(Frame *f, FILE *in, Err *err)
 {
@@ -121,11 +108,20 @@ Status opensees_read(Frame *f, const char *path, double length_m, double force_n
         close(file);
         return fail(err, STATUS_INTERNAL, "%s: %s", program, strerror(why));
     }
-    char word[8], text[sizeof err->text] = "";
+
+    /* The answer, or the line under way and why there is none. */
+    char word[8] = "", text[sizeof err->text] = "", line[UNDER_WAY_MAX] = "";
     FILE *in = fdopen(file, "r");
     Status status = STATUS_OK;
-    if (!in || how != 0 || fseek(in, UNDER_WAY_MAX, SEEK_SET) != 0 || fscanf(in, "%7s%479[^\n]", word, text) < 1)
-        status = fail_at_line(path, file, how, err);
+    const int sign = WIFSIGNALED(how) ? WTERMSIG(how) : 0;
+    if (pread(file, line, sizeof line - 1, 0) <= 0 || !line[0])
+        snprintf(line, sizeof line, "%.400s", path);
+    if (sign == SIGALRM || sign == SIGXCPU)
+        status = bad_data(err, "%s: takes more than %d s", line, OPENSEES_SECONDS);
+    else if (!in || how != 0 || fseek(in, UNDER_WAY_MAX, SEEK_SET) != 0 || fscanf(in, "%7s%479[^\n]", word, text) < 1)
+        status =
+            bad_data(err, "%s: needs more than 1 GB or fills the stack; the program that read the model was ended (%s)",
+                     line, sign ? strsignal(sign) : "exit");
     else if (word[0] == 'r')
         status = bad_data(err, "%s", text + 1);
     else

@@ -2,6 +2,8 @@
 
 #include <unistd.h>
 
+#include "base/text.h"
+
 /* ---- files ---------------------------------------------------------------------------------------------------- */
 
 #define FILES(X)                                                                                                       \
@@ -72,7 +74,7 @@ static void list_columns(const SheetForm *form, int required, char list[200])
     *list = 0;
     for (const Column *c = form->column; c < form->column + COLUMNS_MAX && c->name; c++)
         if (isnan(c->otherwise) == required)
-            snprintf(list + strlen(list), 200 - strlen(list), "%s%s", *list ? " " : "", c->name);
+            text_join(list, 200, " ", "%s", c->name);
 }
 
 /* Refuses a file without a column that must be there, or with one that is not known. */
@@ -126,8 +128,8 @@ Status sheet_read(const SheetForm *form, const char *model, void *user, Err *err
     Table s;
     TRY(model_table(&s, model, form->file, TABLE_WORDS, err));
     Status status = check_columns(form, &s, err);
-    for (size_t i = 0; i < s.n_rows && status == STATUS_OK; i++)
-        status = read_row(form, &s, i, user, err);
+    for (size_t i = 0; i < s.n_rows; i++)
+        THEN(status, read_row(form, &s, i, user, err));
     table_free(&s);
     return status;
 }

@@ -112,30 +112,21 @@ __attribute__((format(printf, 3, 4))) static void say(const Warner *w, const cha
     w->warn(key, text, w->user);
 }
 
-static int is_period(double per_storey)
-{
-    return per_storey >= PERIOD_PER_STOREY_MIN_S && per_storey <= PERIOD_PER_STOREY_MAX_S;
-}
-
-static void warn_of_mass(const Warner *w, int floor, double mass_kg)
-{
-    say(w, "building.model", "floor %d has a mass of %.4g t; a floor usually has %g to %g t", floor, mass_kg / 1e3,
-        FLOOR_MASS_MIN_KG / 1e3, FLOOR_MASS_MAX_KG / 1e3);
-}
-
 /* Warns of figures of the building outside the ranges of summary.h. */
 static void warn_of_building(const SceneSummary *s, const Warner *w)
 {
     const double per_storey = s->period_s[0] / s->n_floors;
     if (s->note[0])
         say(w, "building.model", "skipped:%s", s->note);
-    if (!is_period(per_storey))
+    if (!(per_storey >= PERIOD_PER_STOREY_MIN_S && per_storey <= PERIOD_PER_STOREY_MAX_S))
         say(w, "building.model", "the first period of %.4g s is %.3g s per storey; buildings have %g to %g",
             s->period_s[0], per_storey, PERIOD_PER_STOREY_MIN_S, PERIOD_PER_STOREY_MAX_S);
-    if (s->floor_mass_min_kg < FLOOR_MASS_MIN_KG)
-        warn_of_mass(w, s->lightest, s->floor_mass_min_kg);
-    if (s->floor_mass_max_kg > FLOOR_MASS_MAX_KG)
-        warn_of_mass(w, s->heaviest, s->floor_mass_max_kg);
+    for (int i = 0; i < 2; i++) {
+        const double mass = i ? s->floor_mass_max_kg : s->floor_mass_min_kg;
+        if (i ? mass > FLOOR_MASS_MAX_KG : mass < FLOOR_MASS_MIN_KG)
+            say(w, "building.model", "floor %d has a mass of %.4g t; a floor usually has %g to %g t",
+                i ? s->heaviest : s->lightest, mass / 1e3, FLOOR_MASS_MIN_KG / 1e3, FLOOR_MASS_MAX_KG / 1e3);
+    }
     if (s->heights_assumed)
         say(w, "building.heights_m",
             "the files have no heights: those of the built-in tower are assumed, %.4g m in all; give "
@@ -157,23 +148,6 @@ static void warn_of_building(const SceneSummary *s, const Warner *w)
                 100 * s->damping[i]);
             break;
         }
-}
-
-/* Warns of a core that is damped, slow or modelled unlike others. */
-static void warn_of_core(const SceneSummary *s, const CoreOptions *o, const Warner *w)
-{
-    if (o->damping > DAMPING_MAX)
-        say(w, "core.damping", "%g is %g %% of critical; steel has 1 to 5 %%", o->damping, 100 * o->damping);
-    if (s->core_modes_within == 0)
-        say(w, "motion.record",
-            "holds nothing above %.4g Hz; the core's first mode is at %.4g Hz: the ground moves it as if it were "
-            "rigid, "
-            "impacts alone make it vibrate. Right where the ground shakes no faster; else take a record of smaller "
-            "steps",
-            s->content_hz, s->core_hz);
-    if (o->theory == CORE_EULER_BERNOULLI && s->euler_bernoulli_hz > 1.1 * s->timoshenko_hz)
-        say(w, "core.theory", "shear lowers the core's first mode from %.4g to %.4g Hz; take timoshenko",
-            s->euler_bernoulli_hz, s->timoshenko_hz);
 }
 
 void building_warnings(const Building *b, WarnFn warn, void *user)
@@ -218,7 +192,21 @@ void scene_warnings(const SceneSummary *s, const CoreOptions *core, const Design
     const Warner w = {warn, user};
     const double peak_g = motion_peak(motion) / GRAVITY;
     warn_of_building(s, &w);
-    warn_of_core(s, core, &w);
+
+    /* A core that is damped, slow or modelled unlike others. */
+    if (core->damping > DAMPING_MAX)
+        say(&w, "core.damping", "%g is %g %% of critical; steel has 1 to 5 %%", core->damping, 100 * core->damping);
+    if (s->core_modes_within == 0)
+        say(&w, "motion.record",
+            "holds nothing above %.4g Hz; the core's first mode is at %.4g Hz: the ground moves it as if it were "
+            "rigid, impacts alone make it vibrate. Right where the ground shakes no faster; else take a record of "
+            "smaller steps",
+            s->content_hz, s->core_hz);
+    if (core->theory == CORE_EULER_BERNOULLI && s->euler_bernoulli_hz > 1.1 * s->timoshenko_hz)
+        say(&w, "core.theory", "shear lowers the core's first mode from %.4g to %.4g Hz; take timoshenko",
+            s->euler_bernoulli_hz, s->timoshenko_hz);
+
+    /* What moves it, and what stands around it. */
     if (peak_g > PEAK_MAX_G)
         say(&w, "motion.pga_g", "a peak of %.4g g; hardly a record exceeds %g g", peak_g, PEAK_MAX_G);
     if (design->gap_m.at[1] > GAP_MAX_M)

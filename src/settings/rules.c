@@ -25,6 +25,13 @@ __attribute__((format(printf, 2, 3))) static void break_rule(const Rules *r, con
     r->broken(text, r->user);
 }
 
+/* A text that cannot be read. */
+static void check_text(const Rules *r, Status read, const Err *err)
+{
+    if (read != STATUS_OK)
+        break_rule(r, "%s", err->text);
+}
+
 /* Rules of the motion, the core and the variables of a design. */
 static void check_structure(const Settings *s, const Rules *r)
 {
@@ -39,17 +46,13 @@ static void check_structure(const Settings *s, const Rules *r)
     Err err;
     if (motion_scalings(m, scalings) > 1)
         break_rule(r, "motion: a record is scaled in one way, not in several: %s", scalings);
-    if (target_parse(m->target, &(CodeSpectrum){0}, &err) != STATUS_OK)
-        break_rule(r, "%s", err.text);
-    if (motion_unit_parse(m->unit, &(MotionUnit){0}, &(double){0}, &err) != STATUS_OK)
-        break_rule(r, "%s", err.text);
-    if (text_form_parse(m->text, &(TextForm){0}, &err) != STATUS_OK)
-        break_rule(r, "%s", err.text);
+    check_text(r, target_parse(m->target, &(CodeSpectrum){0}, &err), &err);
+    check_text(r, motion_unit_parse(m->unit, &(MotionUnit){0}, &(double){0}, &err), &err);
+    check_text(r, text_form_parse(m->text, &(TextForm){0}, &err), &err);
     if (m->highpass_hz > 0 && m->lowpass_hz > 0 && m->highpass_hz >= m->lowpass_hz)
         break_rule(r, "motion.highpass_hz: %g must be below motion.lowpass_hz = %g", m->highpass_hz, m->lowpass_hz);
 
-    if (foundation_parse(o->foundation, 1, &f, &err) != STATUS_OK)
-        break_rule(r, "%s", err.text);
+    check_text(r, foundation_parse(o->foundation, 1, &f, &err), &err);
     if (o->foundation_factor != 1 && is_fixed)
         break_rule(r, "core.foundation_factor: is of core.foundation, which is fixed; leave it at 1");
     if (neighbour_is_given(o) && !is_fixed)

@@ -1,6 +1,5 @@
 #include "settings/settings.h"
 
-#include <ctype.h>
 #include <errno.h>
 #include <limits.h>
 
@@ -364,13 +363,11 @@ static void *field_of(Settings *s, const Option *o)
 /* Index of value in "a|b|c", or -1. */
 static int word_index(const char *words, const char *value)
 {
-    const size_t length = strlen(value);
     for (int i = 0; words; i++) {
-        const char *end = strchr(words, '|');
-        const size_t n = end ? (size_t)(end - words) : strlen(words);
-        if (n == length && strncmp(words, value, n) == 0)
+        const size_t n = strcspn(words, "|");
+        if (n == strlen(value) && strncmp(words, value, n) == 0)
             return i;
-        words = end ? end + 1 : NULL;
+        words = words[n] ? words + n + 1 : NULL;
     }
     return -1;
 }
@@ -489,7 +486,7 @@ static Status assign_text(Settings *s, const Option *o, const char *value, Err *
         return bad_data(err, "%s: is longer than %d characters", o->key, OPTION_TEXT_MAX - 1);
     const int needs_quotes = strstr(value, " #") != NULL, has_both = strchr(value, '"') && strchr(value, '\'');
     if (strpbrk(value, "\r\n") || strstr(value, " ;") || (needs_quotes && (has_both || strchr(value, '\\'))) ||
-        isspace((unsigned char)value[0]) || isspace((unsigned char)value[strlen(value) - 1]))
+        is_blank(value[0]) || is_blank(value[strlen(value) - 1]))
         return bad_data(
             err,
             "%s: '%.60s' cannot be kept in a settings file (line ends, ' ;', ' #' beside quotes, blanks around it)",
@@ -610,7 +607,7 @@ static void change_file(char path[OPTION_TEXT_MAX], void *user)
     memcpy(words, path + n, strlen(path + n) + 1);
     path[n] = 0;
     c->change(path, c->user);
-    snprintf(path + strlen(path), OPTION_TEXT_MAX - strlen(path), "%s", words);
+    text_join(path, OPTION_TEXT_MAX, "", "%s", words);
 }
 
 void table_change_files(Settings *s, int i, ListItemFn change, void *user)
@@ -645,7 +642,7 @@ static void make_relative(char path[OPTION_TEXT_MAX], void *folder)
 {
     const char *from = folder;
     char *to = path[0] == '/' ? NULL : realpath(path, NULL), relative[2 * PATH_MAX] = "";
-    size_t n = 0, same = 0;
+    size_t same = 0;
     if (!to)
         return;
     for (size_t i = 0;; i++) { /* the folder that both have in common */
@@ -655,8 +652,8 @@ static void make_relative(char path[OPTION_TEXT_MAX], void *folder)
             break;
     }
     for (const char *c = from + same; (c = strchr(c, '/')); c++)
-        n += snprintf(relative + n, sizeof relative - n, n ? "/.." : "..");
-    snprintf(relative + n, sizeof relative - n, "%s%s", n ? "" : ".", to + same);
+        text_join(relative, sizeof relative, "/", "..");
+    text_join(relative, sizeof relative, "", "%s%s", *relative ? "" : ".", to + same);
     if (strlen(relative) < OPTION_TEXT_MAX)
         memcpy(path, relative, strlen(relative) + 1);
     free(to);
@@ -737,11 +734,10 @@ static void format_value(const Settings *s, const Option *o, char text[OPTION_TE
     const void *field = (const char *)s + o->offset;
     const double *share = field;
     const NumberList *list = field;
-    char name[OPTION_TEXT_MAX];
+    char name[OPTION_TEXT_MAX], item[OPTION_TEXT_MAX];
     double number = 0;
-    size_t n = 0;
     int word;
-    snprintf(text, OPTION_TEXT_MAX, "none"); /* unless a list or shares have something */
+    *text = 0;
     switch (o->kind) {
     case KIND_REAL:
     case KIND_WHOLE:
@@ -767,15 +763,14 @@ static void format_value(const Settings *s, const Option *o, char text[OPTION_TE
             if (share[i] == 0)
                 continue;
             format_word(name, o->words, i);
-            n += snprintf(text + n, OPTION_TEXT_MAX - n, "%s%s=", n ? " " : "", name);
-            format_real(share[i], name);
-            n += snprintf(text + n, OPTION_TEXT_MAX - n, "%s", name);
+            format_real(share[i], item);
+            text_join(text, OPTION_TEXT_MAX, " ", "%s=%s", name, item);
         }
         break;
     case KIND_LIST:
-        for (int i = 0; i < list->n && n < OPTION_TEXT_MAX; i++) {
-            format_real(list->at[i], name);
-            n += snprintf(text + n, OPTION_TEXT_MAX - n, "%s%s", i ? ", " : "", name);
+        for (int i = 0; i < list->n; i++) {
+            format_real(list->at[i], item);
+            text_join(text, OPTION_TEXT_MAX, ", ", "%s", item);
         }
         break;
     case KIND_TEXT:
@@ -784,6 +779,8 @@ static void format_value(const Settings *s, const Option *o, char text[OPTION_TE
         snprintf(text, OPTION_TEXT_MAX, "%s", (const char *)field);
         break;
     }
+    if (!*text) /* no number in the list or among the shares */
+        snprintf(text, OPTION_TEXT_MAX, "none");
 }
 
 static int is_meant(const Option *o, const char *word)
@@ -827,7 +824,7 @@ void settings_write(const Settings *s, FILE *out, SettingsForm form, const char 
         if (!is_meant(o, word) ||
             (form == SETTINGS_BASIC && !(o->flags & SETTING_BASIC) && strcmp(value, standard) == 0))
             continue;
-        if (strncmp(section, o->key, (size_t)n + 1) != 0)
+        if (strncmp(section, o->key, n + 1) != 0)
             fprintf(out, "%s[%.*s]\n", *section ? "\n" : "", n, o->key);
         section = o->key;
         if (form != SETTINGS_PLAIN) {

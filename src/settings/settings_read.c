@@ -1,11 +1,11 @@
 #include "settings/settings.h"
 
-#include <ctype.h>
 #include <glob.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include "base/csv.h"
+#include "base/text.h"
 #include "scene/foundation.h"
 #include "settings/rules.h"
 #include "settings/table.h"
@@ -56,7 +56,7 @@ static char *skip_blanks(char *text)
 
 static void trim_end(char *text)
 {
-    for (size_t n = strlen(text); n > 0 && isspace((unsigned char)text[n - 1]); n--)
+    for (size_t n = strlen(text); n > 0 && is_blank(text[n - 1]); n--)
         text[n - 1] = 0;
 }
 
@@ -92,7 +92,7 @@ static void anchor_command(char command[OPTION_TEXT_MAX], Reading *r)
         const char *quote = strpbrk(word, " \t\"\\") ? "'" : "";
         if (strlen(word) > n && stat(word, &st) == 0 && S_ISREG(st.st_mode) && !strchr(word, '\'') &&
             strlen(word) + strlen(rest) + 2 < (size_t)(command + OPTION_TEXT_MAX - at))
-            n = (size_t)sprintf(at, "%s%s%s%s", quote, word, quote, rest) - strlen(rest);
+            n = sprintf(at, "%s%s%s%s", quote, word, quote, rest) - strlen(rest);
         at = skip_blanks(at + n);
     }
 }
@@ -110,7 +110,7 @@ static void strip_quotes(const char *value, char plain[OPTION_TEXT_MAX])
 static const char *plain_value(const char *value, char plain[OPTION_TEXT_MAX])
 {
     char inner[OPTION_TEXT_MAX], item[OPTION_TEXT_MAX], text[OPTION_TEXT_MAX];
-    size_t n = strlen(value), used = 0;
+    const size_t n = strlen(value);
     if (n < 2 || n >= sizeof inner || !strchr("\"'[", value[0]))
         return value;
     if (value[0] != '[' || value[n - 1] != ']') {
@@ -126,8 +126,8 @@ static const char *plain_value(const char *value, char plain[OPTION_TEXT_MAX])
         if (!is_there)
             return value;
         strip_quotes(item, text);
-        used += snprintf(plain + used, OPTION_TEXT_MAX - used, "%s%s", used ? ", " : "", text);
-        if (used >= OPTION_TEXT_MAX)
+        text_join(plain, OPTION_TEXT_MAX, ", ", "%s", text);
+        if (strlen(plain) + 1 == OPTION_TEXT_MAX)
             return value;
     }
     return plain;
@@ -187,7 +187,7 @@ static void take_line(Reading *r, char *line)
     if (close && strchr(";#", *skip_blanks(close)))
         *close = 0;
     for (char *c = value; (c = strpbrk(c, ";#")); c++)
-        if (c > value && (!close || c > close) && isspace((unsigned char)c[-1])) {
+        if (c > value && (!close || c > close) && is_blank(c[-1])) {
             *c = 0;
             break;
         }

@@ -10,7 +10,6 @@
  *
  * Samples stand row by row, in columns of `width` where they run together; or in one column per channel, whose NAMES
  * are in the header, else in its last line; "/a/b/c" is one value for each. A column of times is checked row by row. */
-#include <ctype.h>
 #include <strings.h>
 
 #include "base/units.h"
@@ -52,21 +51,9 @@ typedef struct Format {
     HeaderWord words[12];
 } Format;
 
-/* ---- headers ----------------------------------------------------------------------------------------------------- */
-
-/* Does a record of the format begin with the next line? */
-static int recognise(const Format *f, Lines l)
-{
-    if (f->is)
-        return f->is(l);
-    while (l.number < MAX_OF(f->within, 1) && lines_next(&l))
-        if ((!f->begins || text_is(BEGINS, l.from, l.to, f->begins)) &&
-            (!f->has || text_is(HOLDS, l.from, l.to, f->has)))
-            return 1;
-    return 0;
-}
-
 static const Format *format_at(Lines l);
+
+/* ---- headers ----------------------------------------------------------------------------------------------------- */
 
 /* The value behind the word of the line; 0: there is none. */
 static int find_behind(Header *h, Field field, const Lines *l, const char *word)
@@ -82,9 +69,9 @@ static int is_integers(const Lines *l)
 {
     int digits = 0;
     for (const char *p = l->from; p && p < l->to; p++) {
-        if (!isdigit((unsigned char)*p) && *p != ' ' && *p != '-')
+        if (!is_digit(*p) && *p != ' ' && *p != '-')
             return 0;
-        digits += isdigit((unsigned char)*p) != 0;
+        digits += is_digit(*p);
     }
     return digits >= 16;
 }
@@ -101,10 +88,10 @@ static Status read_header(const Format *f, Lines *l, Header *h, Err *err)
     for (int i = 1;; i++) {
         for (const HeaderWord *w = f->words; w->text; w++) {
             const size_t n = strcspn(w->text, "|");
-            const int is_letter = *w->text == '=' && l->to - l->from == 1 && strchr(w->text + 1, *l->from);
+            const int is_one = *w->text == '=' && l->to - l->from == 1 && strchr(w->text + 1, *l->from);
             Lines rest = *l;
-            rest.from += is_letter ? 0 : n;
-            if (!h->at[w->field].from && (is_letter || (rest.from <= l->to && !strncasecmp(l->from, w->text, n))))
+            rest.from += is_one ? 0 : n;
+            if (!h->at[w->field].from && (is_one || (rest.from <= l->to && !strncasecmp(l->from, w->text, n))))
                 find_behind(h, w->field, &rest, w->text[n] ? w->text + n + 1 : "");
         }
         h->last = l->from < l->to ? *l : h->last;
@@ -195,7 +182,6 @@ static MotionUnit unit_within(const char *from, const char *to)
 /* The number at `from`, in the unit of its line, or else in the channel's. */
 static void read_peak(Channel *c, const char *line, const char *from, const char *to)
 {
-    static const double M_S2[] = {0, 1, 0.01, GRAVITY};
     double x, digit = 1;
     int behind_point = 0;
     if (!number_behind(from, to, "", &x) || x == 0)
@@ -208,7 +194,7 @@ static void read_peak(Channel *c, const char *line, const char *from, const char
     }
     MotionUnit unit = unit_within(from, to);
     unit = unit ? unit : unit_within(line, from);
-    const double scale = unit ? M_S2[unit] : M_S2[c->unit] * c->scale;
+    const double scale = unit ? UNIT_IN_M_S2[unit] : UNIT_IN_M_S2[c->unit] * c->scale;
     if (fabs(x) * scale <= c->peak)
         return;
     c->peak = fabs(x) * scale;
@@ -248,7 +234,7 @@ static Status check_type(const Lines *type, Err *err)
 {
     Lines whole = *type;
     whole.from = whole.raw;
-    if (!type->from || line_has(&whole, "accel") || !text_is(HOLDS, whole.from, whole.to, "veloc|displ"))
+    if (!type->from || line_has(&whole, "accel") || !line_has(&whole, "veloc|displ"))
         return STATUS_OK;
     fail_at(err, type, "not an acceleration: '%.*s'", line_shown(&whole), whole.from);
     err->sub = SUB_NO_RECORD;
@@ -314,28 +300,6 @@ static int says_corrected(const Lines *l)
     return l->from && text_is(HOLDS, l->raw, l->to, "corrected acc") && !text_is(HOLDS, l->raw, l->to, "uncorrected");
 }
 
-/* "340 deg (Rcrdr Chan 1)", "1: 340 deg", "360 Deg   Location: Roof": with the location, which tells the channels of a
- * building apart. */
-static void read_name(const Header *h, Channel *c)
-{
-    const Lines *name = &h->at[NAME], *place = &h->at[PLACE];
-    const char *from = name->from, *to = from;
-    if (!from)
-        return;
-    for (const char *p = from; p < name->to && strchr(" 0123456789:", *p); p++)
-        from = *p == ':' ? p + 1 : from;
-    while (to < name->to && *to != '(' && !(to > from && text_is(BEGINS, to, name->to, "Location")))
-        to++;
-    channel_name(c, from, to);
-    for (from = place->from; from && from < place->to && strchr(" :=", *from);)
-        from++;
-    if (from) {
-        char own[sizeof c->name];
-        memcpy(own, c->name, sizeof own);
-        channel_named(c, "%s, %.*s", own, (int)(place->to - from), from);
-    }
-}
-
 /* One record of a format: one channel row by row, or a column for each. */
 static Status read_channel(const Format *f, Record *r, Lines *l, Err *err)
 {
@@ -347,7 +311,23 @@ static Status read_channel(const Format *f, Record *r, Lines *l, Err *err)
     if (f->parting)
         return read_columns(f, r, l, &h, err);
     TRY(record_channel(r, l, &c, err));
-    read_name(&h, c);
+
+    /* The name: "340 deg (Rcrdr Chan 1)", "1: 340 deg", "360 Deg   Location: Roof", with the location, which tells the
+     * channels of a building apart. */
+    const Lines *name = &h.at[NAME], *place = &h.at[PLACE];
+    const char *from = name->from, *to, *where = name->from ? place->from : NULL;
+    for (const char *p = from; p && p < name->to && strchr(" 0123456789:", *p); p++)
+        from = *p == ':' ? p + 1 : from;
+    for (to = from; to && to < name->to && *to != '(' && !(to > from && text_is(BEGINS, to, name->to, "Location"));)
+        to++;
+    channel_name(c, from, to);
+    while (where && where < place->to && strchr(" :=", *where))
+        where++;
+    if (where) {
+        char own[sizeof c->name];
+        memcpy(own, c->name, sizeof own);
+        channel_named(c, "%s, %.*s", own, (int)(place->to - where), where);
+    }
     if (f->one_word)
         c->name[strcspn(c->name, " ")] = 0;
     c->digitized = f->pairs && !f->more;
@@ -396,7 +376,7 @@ static Status csmip_more(Lines *l, Header *h, Channel *c, Err *err)
     h->width = format_width(l) ? format_width(l) : 10;
     h->at[COUNT] = h->at[TYPE] = *l;
     if (number_behind(l->from, l->to, " at ", &x)) /* "at 200 pts/sec" or "spaced at .005 sec" */
-        h->dt = text_is(HOLDS, l->from, l->to, "pts/s|points/s|samples/s") ? 1 / x : x;
+        h->dt = line_has(l, "pts/s|points/s|samples/s") ? 1 / x : x;
     const Lines above = h->at[UNIT];
     if (!find_behind(h, UNIT, l, " in units of ") && !find_behind(h, UNIT, l, " in units ") &&
         !find_behind(h, UNIT, l, " in "))
@@ -434,7 +414,7 @@ static Status cosmos_more(Lines *l, Header *h, Channel *c, Err *err)
     do {
         if (!lines_next(l))
             return fail_too_short(l, "samples", err);
-    } while (line_begins(l, "|") || line_has(l, "comment line"));
+    } while (*l->from == '|' || line_has(l, "comment line"));
     h->dt = reals[STEP_AT] * 1e-3;
     h->width = format_width(l);
     h->at[COUNT] = *l;
@@ -464,8 +444,7 @@ enum { SMC_TEXT_LINES = 11 };
 
 static int smc_is(Lines l)
 {
-    return lines_next(&l) &&
-           (line_begins(&l, "*") || text_is(HOLDS, l.from, l.to, "ACCELEROGRAM|VELOCITY|DISPLACEMENT|UNKNOWN")) &&
+    return lines_next(&l) && (line_begins(&l, "*") || line_has(&l, "ACCELEROGRAM|VELOCITY|DISPLACEMENT|UNKNOWN")) &&
            lines_skip(&l, 1) && line_begins(&l, "*") && lines_skip(&l, SMC_TEXT_LINES - 2) && line_begins(&l, "*");
 }
 
@@ -491,7 +470,7 @@ static Status smc_more(Lines *l, Header *h, Channel *c, Err *err)
     for (double i = 0; i < integers[COMMENTS]; i++) {
         if (!lines_next(l))
             return fail_too_short(l, "samples", err);
-        if (!line_begins(l, "|"))
+        if (*l->from != '|')
             return fail_at(err, l, "comment %g of %g does not begin with '|': '%.*s'", i + 1, integers[COMMENTS],
                            line_shown(l), l->from);
     }
@@ -505,8 +484,7 @@ static Status smc_more(Lines *l, Header *h, Channel *c, Err *err)
     const char *p = ahead.from;
     while (p < ahead.to && !strchr("EeDd ", *p))
         p++;
-    for (p += p < ahead.to;
-         p < ahead.to && (isdigit((unsigned char)*p) || (strchr("+-", *p) && !isdigit((unsigned char)p[-1])));)
+    for (p += p < ahead.to; p < ahead.to && (is_digit(*p) || (strchr("+-", *p) && !is_digit(p[-1])));)
         p++;
     h->width = p >= ahead.raw + 10 && p <= ahead.raw + 20 ? (int)(p - ahead.raw) : 10;
     if (reals[RATE_AT] == reals[UNDEFINED] && reals[UNDEFINED] > 1e30) {
@@ -572,7 +550,7 @@ static int at2_is(Lines l)
     while (l.number < 8 && lines_next(&l)) {
         if (l.from < l.to && !strchr("#%!/", *l.from) && line_has(&l, "NPTS") && (has_title || line_has(&l, "DT")))
             return 1;
-        has_title |= text_is(HOLDS, l.from, l.to, "TIME SERIES|TIME HISTORY");
+        has_title |= line_has(&l, "TIME SERIES|TIME HISTORY");
     }
     return 0;
 }
@@ -723,50 +701,49 @@ static const Format *format_at(Lines l)
 {
     l.next = l.raw;
     l.number = 0;
-    for (size_t i = 0; i < N_OF(FORMATS); i++)
-        if (recognise(&FORMATS[i], l))
-            return &FORMATS[i];
+    for (const Format *f = FORMATS; f < FORMATS + N_OF(FORMATS); f++) {
+        if (f->is && f->is(l))
+            return f;
+        for (Lines at = l; !f->is && at.number < MAX_OF(f->within, 1) && lines_next(&at);)
+            if ((!f->begins || line_begins(&at, f->begins)) && (!f->has || line_has(&at, f->has)))
+                return f;
+    }
     return NULL;
 }
 
-/* The record behind the samples, of this format or of another; NULL: none. End marks, velocities and displacements are
- * passed over; other numbers below words would be dropped in silence. */
-static Status find_next(Lines *l, const Format **next, Err *err)
-{
-    int is_known = 1;
-    double x;
-    *next = NULL;
-    for (Lines ahead = lines_ahead(l); ahead.from; ahead = lines_ahead(l)) {
-        if (line_has_letters(&ahead) || !strchr("+-.0123456789", *ahead.from)) {
-            *next = format_at(ahead);
-            if (*next && !(*next)->refused)
-                return STATUS_OK;
-            is_known = *next || text_is(HOLDS, ahead.from, ahead.to, "veloc|displ| vel | dis");
-            *next = NULL;
-        } else if (!is_known && number_behind(ahead.from, ahead.to, "", &x))
-            return fail_at(err, &ahead,
-                           "more numbers, below words, than the header announces; is it a second record? Keep one "
-                           "of them");
-        *l = ahead;
-    }
-    return STATUS_OK;
-}
-
-/* Records lie one after the other. */
+/* Records lie one after the other, of one format or of several. */
 Status text_read(Record *r, Lines *l, Err *err)
 {
     const Lines first = lines_ahead(l);
-    const Format *f = first.from && !r->hints.text.is_given ? format_at(first) : NULL;
+    const Format *f = first.from && !r->how->text.is_given ? format_at(first) : NULL;
     if (!f)
         return columns_read(r, l, err);
     if (f->refused)
         return bad_data(err, "%s: is not read: %s", l->path, f->refused);
     for (r->is_known = 1; f;) {
-        const size_t before = r->n_channels;
+        size_t k = r->n_channels;
         TRY(f->read ? f->read(r, l, err) : read_channel(f, r, l, err));
-        for (size_t k = before; k < r->n_channels; k++)
+        for (; k < r->n_channels; k++)
             r->channel[k].format = f->name;
-        TRY(find_next(l, &f, err));
+
+        /* The next one. End marks, velocities and displacements are passed over; other numbers below words would be
+         * dropped in silence. */
+        int is_known = 1;
+        double x;
+        f = NULL;
+        for (Lines ahead = lines_ahead(l); ahead.from; ahead = lines_ahead(l)) {
+            if (line_has_letters(&ahead) || !strchr("+-.0123456789", *ahead.from)) {
+                f = format_at(ahead);
+                is_known = f || line_has(&ahead, "veloc|displ| vel | dis");
+                if (f && !f->refused)
+                    break;
+            } else if (!is_known && number_behind(ahead.from, ahead.to, "", &x))
+                return fail_at(err, &ahead,
+                               "more numbers, below words, than the header announces; is it a second record? Keep "
+                               "one of them");
+            *l = ahead;
+            f = NULL;
+        }
     }
     return STATUS_OK;
 }

@@ -3,7 +3,7 @@
 #include <archive.h>
 #include <archive_entry.h>
 
-int archive_is(const unsigned char bytes[], size_t n)
+int archive_is(const char bytes[], size_t n)
 {
     return n > 4 &&
            (memcmp(bytes, "PK\003\004", 4) == 0 || memcmp(bytes, "\037\213", 2) == 0 || memcmp(bytes, "BZh", 3) == 0 ||

@@ -17,8 +17,6 @@
  *   asked     motion.text says which lines and columns to take (TextForm), and that counts before what is found above
  *   1,5;2,5   a comma is a decimal one where semicolons, tabs or blanks part the columns and every comma stands between
  *             digits, and where the names name one column and no number has a point */
-#include <ctype.h>
-
 #include "motion/formats/record.h"
 
 typedef struct {
@@ -38,20 +36,18 @@ typedef struct {
 /* ---- header ------------------------------------------------------------------------------------------------------ */
 
 /* A step or a count that is stated twice must be the same. */
-static void state_number(Plain *t, double *have, double x, const char *what, const Lines *l)
+static void state_number(Plain *t, double *have, double x, const Lines *l)
 {
     if (*have == 0)
         *have = x;
     else if (fabs(x - *have) > 0.01 * *have)
-        fail_at(&t->wrong, l, "states a %s of %.6g, elsewhere in the file it is %.6g", what, x, *have);
+        fail_at(&t->wrong, l, "states a %s of %.6g, elsewhere in the file it is %.6g",
+                have == &t->dt ? "step" : "number of samples", x, *have);
 }
 
 static const char PARTS[] = "_ ()[],"; /* between the words of a name */
 
-static int names_seconds(Cell c)
-{
-    return text_is(EQUALS, c.from, c.to, "s|sec|secs|second|seconds");
-}
+static const char SECONDS[] = "s|sec|secs|second|seconds";
 
 /* Or a period, by name or as the T of an oscillator; the last two are the first letters of both in Japanese and
  * Chinese. */
@@ -75,7 +71,7 @@ static int names_times(Cell c)
         return 1;
     while (p < c.to)
         word = cell_next(&p, c.to, PARTS);
-    return names_seconds(word);
+    return text_is(EQUALS, word.from, word.to, SECONDS);
 }
 
 /* The unit that the text begins with, where it begins with one. */
@@ -112,7 +108,7 @@ static void read_value(Plain *t, int kind, const Lines *l, const char *mark)
         Channel c = {.scale = 1};
         read_unit(&c, mark, l->to);
         const char *next = memchr(mark, ',', l->to - mark); /* "units: s, g" */
-        if (next && names_seconds((Cell){.from = c.stated, .to = c.stated + strlen(c.stated)}))
+        if (next && text_is(EQUALS, c.stated, c.stated + strlen(c.stated), SECONDS))
             read_unit(&c, next + 1, l->to);
         if (c.unit && t->all.unit && c.unit != t->all.unit)
             fail_at(&t->wrong, l, "states another unit than a line above");
@@ -124,10 +120,8 @@ static void read_value(Plain *t, int kind, const Lines *l, const char *mark)
         kind == COUNT ? number_behind(mark, l->to, "", &x) : quantity_behind(mark, l->to, "", kind == RATE, &x);
     if (got < 0)
         fail_at(&t->wrong, l, "the step in '%.*s' is not in seconds", line_shown(l), l->from);
-    else if (got > 0 && x > 0 && x <= 1e6 && kind == COUNT)
-        state_number(t, &t->count, x, "number of samples", l);
     else if (got > 0 && x > 0 && x <= 1e6)
-        state_number(t, &t->dt, kind == RATE ? 1 / x : x, "step", l);
+        state_number(t, kind == COUNT ? &t->count : &t->dt, kind == RATE ? 1 / x : x, l);
 }
 
 /* Every "key ... = value" or "key ... : value" of a comment or a line of words. */
@@ -141,8 +135,8 @@ static void read_pairs(Plain *t, const Lines *l)
             const char *mark = at + n;
             while (mark < l->to && !strchr("=:;,", *mark))
                 mark++;
-            if (mark == l->to || strchr(";,", *mark) || (at > l->from && isalnum((unsigned char)at[-1])) ||
-                isalpha((unsigned char)at[n]) || find_word(at + n, mark, " per "))
+            if (mark == l->to || strchr(";,", *mark) || (at > l->from && (is_letter(at[-1]) || is_digit(at[-1]))) ||
+                is_letter(at[n]) || find_word(at + n, mark, " per "))
                 continue;
             read_value(t, KEYS[i].kind, l, mark);
             t->restated_line = t->r->n ? l->number : 0;
@@ -156,24 +150,22 @@ static void read_phrases(Plain *t, const Lines *l)
     const char *p = l->from, *in = find_word(p, l->to, "acceleration in "),
                *comma = in ? memchr(in, ',', l->to - in) : NULL;
     double x;
-    while (p < l->to && isdigit((unsigned char)*p))
+    while (p < l->to && is_digit(*p))
         p++;
     if (text_is(BEGINS, p, l->to, " points,| samples,") && number_behind(l->from, p, "", &x)) {
-        state_number(t, &t->count, x, "number of samples", l);
+        state_number(t, &t->count, x, l);
         if (quantity_behind(p, l->to, ",", 0, &x) > 0 && x <= MOTION_STEP_MAX_S)
-            state_number(t, &t->dt, x, "step", l);
+            state_number(t, &t->dt, x, l);
     }
     if (in && !t->all.unit)
         t->all.unit = unit_of(in + strlen("acceleration in "), comma ? comma : l->to);
 }
 
-static const char SIGNS[] = "-=_~+* ";
-
-/* Three or more of these signs and nothing else. */
-static int is_rule(const Lines *l, const char *signs)
+/* Three or more signs and nothing else. */
+static int is_rule(const Lines *l)
 {
     const char *p = l->from;
-    while (p < l->to && strchr(signs, *p))
+    while (p < l->to && strchr("-=_~+* ", *p))
         p++;
     return p == l->to && l->to - l->from >= 3;
 }
@@ -189,8 +181,8 @@ static int is_words(const Lines *l)
 {
     double x;
     const char *p = l->from;
-    if (!isalpha((unsigned char)*p) && (unsigned char)*p < 128 && !strchr("\"'[(,", *p)) {
-        while (p + 1 < l->to && !(isalpha((unsigned char)p[0]) && isalpha((unsigned char)p[1])))
+    if (!is_letter(*p) && (unsigned char)*p < 128 && !strchr("\"'[(,", *p)) {
+        while (p + 1 < l->to && !(is_letter(p[0]) && is_letter(p[1])))
             p++;
         return p + 1 < l->to && !text_is(BEGINS, p, l->to, "nan|inf");
     }
@@ -202,27 +194,22 @@ static int is_words(const Lines *l)
 static int is_rule_above(const Lines *l)
 {
     Lines ahead = lines_ahead(l);
-    return is_rule(l, SIGNS) &&
-           (!memchr(l->from, '*', l->to - l->from) || (ahead.from && (is_words(&ahead) || is_rule(&ahead, SIGNS))));
+    return is_rule(l) && (!line_has(l, "*") || (ahead.from && (is_words(&ahead) || is_rule(&ahead))));
 }
 
 /* ---- names ------------------------------------------------------------------------------------------------------- */
 
 static int has_marks(const Lines *l)
 {
-    const char *p = l->from;
-    while (p < l->to && !strchr(",;\t", *p))
-        p++;
-    return p < l->to;
+    return line_has(l, ",|;|\t");
 }
 
 /* The name at *p; commas, semicolons or tabs part names, or else blanks, but none that stands in brackets or before
  * them. */
 static Cell next_name(const Lines *l, const char **p)
 {
-    const size_t n = l->to - l->from;
     if (has_marks(l))
-        return cell_next(p, l->to, memchr(l->from, ';', n) ? ";" : ",\t");
+        return cell_next(p, l->to, line_has(l, ";") ? ";" : ",\t");
     Cell c = {.from = *p, .to = *p};
     for (int deep = 0; c.to < l->to; c.to++) {
         const char *behind = c.to;
@@ -290,8 +277,7 @@ static void unit_in_name(Cell name, Channel *c)
         return;
     }
     for (const char *p = name.from; p < name.to && !c->unit; p++)
-        if ((p == name.from || strchr("_ ", p[-1])) &&
-            !(p - name.from > 2 && isdigit((unsigned char)p[-2]) && isdigit((unsigned char)p[-3])))
+        if ((p == name.from || strchr("_ ", p[-1])) && !(p - name.from > 2 && is_digit(p[-2]) && is_digit(p[-3])))
             c->unit = unit_of(p, name.to);
     for (const char *p = name.from + 1; p < name.to && !c->unit; p++)
         if (p[-1] == '_' && text_is(EQUALS, p, name.to, "cm_s|m_s|mm_s|in_s|kn|mn|kpa|mpa|m|cm|mm|knm|rad|deg|mg|hz"))
@@ -304,7 +290,7 @@ static void unit_in_name(Cell name, Channel *c)
 static Status check_times(const Plain *t, Cell name, Err *err)
 {
     const Lines *l = &t->names;
-    int is_title = !has_marks(l) && !text_is(HOLDS, l->from, l->to, "[|(|_");
+    int is_title = !has_marks(l) && !line_has(l, "[|(|_");
     for (const char *p = name.from; p < name.to; p++)
         is_title |= (unsigned char)*p > 127; /* in another script, perhaps of time */
     if (!t->is_timed && name.from < name.to && !is_title)
@@ -349,14 +335,35 @@ static int has_decimal_commas(const Plain *t)
                                        csv_has_decimal_commas(l->from, l->to));
 }
 
+/* How many numbers the line has; 0: something else stands in it. */
+static int count_numbers(Lines l)
+{
+    int n = 0;
+    double x;
+    for (const char *p = l.from; p < l.to; n++)
+        if (cell_number(cell_next(&p, l.to, " ,;"), 0, &x) != NUMBER)
+            return 0;
+    return n;
+}
+
 /* Refuses a text that is no table either, with its first lines, by which people see what they have, and what they might
  * ask for. */
 static Status fail_unknown(const Plain *t, Err *err)
 {
-    char form[TEXT_FORM_MAX];
-    Lines first = lines_ahead(&t->start), second = first;
+    char form[64] = "";
+    Lines first = lines_ahead(&t->start), second = first, l = t->start, one = l;
+    int width = 0;
     lines_next_filled(&second);
-    text_form_suggest(&t->start, form);
+
+    /* What motion.text might read it by, its first two lines of equally many numbers being samples. */
+    while (lines_next_filled(&l) && !((width = count_numbers(l)) && one.from && count_numbers(one) == width))
+        one = l;
+    if (l.from && one.from && width > 0)
+        snprintf(form, sizeof form,
+                 width == 1   ? "skip=%d"
+                 : width == 2 ? "skip=%d,columns=time:1,value:2"
+                              : "skip=%d,per_line=%d (or columns=time:1,value:2)",
+                 one.number - 1, width);
     return fail_at(err, t->l,
                    "in no format that is known here (docs/motions.md lists them), and no plain columns of "
                    "numbers (a list of motions has a name that ends in list.txt); the first line is '%.*s'%s%.*s%s%s%s",
@@ -392,14 +399,14 @@ static Status read_rows(Plain *t, Err *err)
             p++;
         if (p == l->to || (before == 0 && is_rule_above(l)))
             continue;
-        if (l->number <= t->r->hints.text.skip) {
+        if (l->number <= t->r->how->text.skip) {
             read_pairs(t, l);
             continue;
         }
         const int is_above = before == 0 && is_words(l);
         if (is_above)
             read_phrases(t, l);
-        if (is_comment(l) || (is_above && memchr(l->from, '=', l->to - l->from))) {
+        if (is_comment(l) || (is_above && line_has(l, "="))) {
             read_pairs(t, l);
             if (before > 0)
                 continue;
@@ -410,7 +417,7 @@ static Status read_rows(Plain *t, Err *err)
                 h.from++;
             p = h.from;
             const Cell first = next_name(&h, &p);
-            if (!text_is(HOLDS, h.from, h.to, "=|:") && (has_marks(&h) || text_is(HOLDS, h.from, h.to, "[|(|_")) &&
+            if (!line_has(&h, "=|:") && (has_marks(&h) || line_has(&h, "[|(|_")) &&
                 (names_times(first) || names_frequency(first)))
                 t->above = h;
         } else if (is_above) {
@@ -428,7 +435,7 @@ static Status read_rows(Plain *t, Err *err)
             if (s == STATUS_OK)
                 continue;
             t->r->n = before;
-            if (before && ((is_words(l) && !has_marks(l)) || is_rule(l, SIGNS)) && !lines_ahead(l).from) /* "end" */
+            if (before && ((is_words(l) && !has_marks(l)) || is_rule(l)) && !lines_ahead(l).from) /* "end" */
                 return STATUS_OK;
             return err->sub != SUB_NO_NUMBER || is_table(t) ? s : fail_unknown(t, err);
         }
@@ -436,45 +443,41 @@ static Status read_rows(Plain *t, Err *err)
     return STATUS_OK;
 }
 
-/* Two numbers before the samples are "npts dt" where they stand alone in their row, or one each in two, and the first
- * counts the samples, or the rows, that follow; one number is "npts" in the same way. */
-static void read_count(Plain *t)
-{
-    enum { SAMPLES_MIN = 10 }; /* of fewer a sample might be their number */
-    Record *r = t->r;
-    if (r->n < 4 || t->width > 2 || (t->width == 1 && r->n < SAMPLES_MIN))
-        return;
-    const double count = r->row[0].a, dt = r->row[1].a, rows = (double)t->n_rows, n = (double)r->n;
-    const int in_two = t->width == 1 && r->row[2].line != r->row[1].line && count == n - 2;
-    const int is_pair = t->width == 2 && (count == n - 2 || count == rows - 1);
-    const int has_dt = dt > 0 && dt < MOTION_STEP_MAX_S && (is_pair || in_two);
-    const Lines l = {.path = t->l->path, .number = r->row[0].line};
-    if (!has_dt && !(t->width == 1 && (count == n - 1 || count == rows - 1)))
-        return;
-    if (has_dt)
-        state_number(t, &t->dt, dt, "step", &l);
-    state_number(t, &t->count, count, "number of samples", &l);
-    r->n -= 1 + has_dt;
-    memmove(r->row, r->row + 1 + has_dt, r->n * sizeof *r->row);
-    measure_rows(t);
-}
-
 /* Rows, with the comma as decimal mark where the names name one column; then without what stands above the samples. */
 static Status read_table(Plain *t, Err *err)
 {
+    enum { SAMPLES_MIN = 10 }; /* of fewer a sample might be their number */
+    Record *r = t->r;
     Lines first = t->start;
     TRY(read_rows(t, err));
     measure_rows(t);
     if (t->n_rows < 2 && !is_named(t) && lines_next_filled(&first) && !is_comment(&first) && !(t->count > 1))
         return fail_unknown(t, err);
     if (t->n_names == 1 && t->width == 2 && !t->l->point_line) {
-        *t = (Plain){.r = t->r, .l = t->l, .start = t->start, .is_one = 1};
+        *t = (Plain){.r = r, .l = t->l, .start = t->start, .is_one = 1};
         *t->l = t->start;
-        t->r->n = 0;
+        r->n = 0;
         TRY(read_rows(t, err));
         measure_rows(t);
     }
-    read_count(t);
+
+    /* Two numbers before the samples are "npts dt" where they stand alone in their row, or one each in two, and the
+     * first counts the samples, or the rows, that follow; one number is "npts" in the same way. */
+    if (r->n >= 4 && t->width <= 2 && (t->width == 2 || r->n >= SAMPLES_MIN)) {
+        const double count = r->row[0].a, dt = r->row[1].a, n = (double)r->n, rows = (double)t->n_rows;
+        const int is_alone = t->width == 1, in_two = is_alone && r->row[2].line != r->row[1].line;
+        const int has_dt = dt > 0 && dt < MOTION_STEP_MAX_S &&
+                           ((count == n - 2 && (in_two || !is_alone)) || (count == rows - 1 && !is_alone));
+        const Lines l = {.path = t->l->path, .number = r->row[0].line};
+        if (has_dt)
+            state_number(t, &t->dt, dt, &l);
+        if (has_dt || (is_alone && (count == n - 1 || count == rows - 1))) {
+            state_number(t, &t->count, count, &l);
+            r->n -= 1 + has_dt;
+            memmove(r->row, r->row + 1 + has_dt, r->n * sizeof *r->row);
+            measure_rows(t);
+        }
+    }
     if (t->names.from && !is_named(t))
         read_pairs(t, &t->names);
     if (!t->names.from && t->above.from)
@@ -569,23 +572,13 @@ static Status fail_unnamed(const Plain *t, const Lines *first, Err *err)
                        : "");
 }
 
-/* 0, 1, 2, ... or from another whole number on: these are samples, not seconds. */
-static int counts_samples(const Plain *t)
-{
-    const Row *row = t->r->row;
-    size_t k = 0;
-    while (k < t->n_rows && row[k * t->width].decimals == 0 && row[k * t->width].a == row[0].a + (double)k)
-        k++;
-    return t->width > 1 && t->n_rows > 1 && row[0].a == floor(row[0].a) && k == t->n_rows;
-}
-
 /* ---- as asked ---------------------------------------------------------------------------------------------------- */
 
 /* One channel of all numbers, or of every second one behind its time, or of one column beside its times. */
 static Status take_form(Plain *t, Err *err)
 {
     Record *r = t->r;
-    const TextForm *form = &r->hints.text;
+    const TextForm *form = &r->how->text;
     size_t time = form->time, value = form->value ? form->value : 1 + (time == 1);
     Channel *c;
     const int is_short = t->odd_row + 1 == t->n_rows && t->odd_width < t->width; /* the last line */
@@ -619,43 +612,33 @@ static Status take_form(Plain *t, Err *err)
 
 /* ---- what is no motion as it stands ------------------------------------------------------------------------------ */
 
-/* t a t a ...: the numbers at odd places rise all through the file. */
-static int is_paired(const Plain *t)
-{
-    const Record *r = t->r;
-    size_t i = 2;
-    while (i < r->n && r->row[i].a > r->row[i - 2].a)
-        i += 2;
-    return t->width >= 4 && t->width % 2 == 0 && r->n >= 8 && i >= r->n;
-}
-
-/* Does a bare column begin with a factor, its step or both? The first number is larger than all others, or the second
- * is the step that was given, or both are printed with fewer digits than the samples. */
-static int begins_with_factor(const Plain *t)
-{
-    enum { SAMPLES_MIN = 10 };
-    const Row *row = t->r->row;
-    size_t i = 1, k = 2;
-    if (t->width != 1 || t->r->n < SAMPLES_MIN || row[0].a == 0)
-        return 0;
-    while (i < t->r->n && fabs(row[i].a) < fabs(row[0].a))
-        i++;
-    while (k < SAMPLES_MIN && MAX_OF(row[0].decimals, row[1].decimals) + 2 <= row[k].decimals)
-        k++;
-    return i == t->r->n || row[1].a == t->r->hints.dt_s || (k == SAMPLES_MIN && row[1].a > 0);
-}
-
 /* Refuses what would be read as another motion than it is. */
 static Status check_motion(const Plain *t, Err *err)
 {
+    enum { SAMPLES_MIN = 10 };
     const Row *row = t->r->row;
+    const size_t n = t->r->n;
     const Lines first = {.path = t->l->path, .number = row[0].line};
-    if (is_paired(t))
+    size_t i = 2, k = 2;
+
+    /* t a t a ...: the numbers at odd places rise all through the file. */
+    while (i < n && row[i].a > row[i - 2].a)
+        i += 2;
+    if (t->width >= 4 && t->width % 2 == 0 && n >= 8 && i >= n)
         return fail_at(err, &first,
                        "its rows hold pairs of time and value (times %g, %g, %g ...); read them by --text pairs=yes "
                        "(motion.text)",
                        row[0].a, row[2].a, row[4].a);
-    if (!t->r->hints.text.is_given && begins_with_factor(t))
+
+    /* Does a bare column begin with a factor, its step or both? The first number is larger than all others, or the
+     * second is the step that was given, or both are printed with fewer digits than the samples. */
+    if (t->r->how->text.is_given || t->width != 1 || n < SAMPLES_MIN || row[0].a == 0)
+        return STATUS_OK;
+    for (i = 1; i < n && fabs(row[i].a) < fabs(row[0].a);)
+        i++;
+    while (k < SAMPLES_MIN && MAX_OF(row[0].decimals, row[1].decimals) + 2 <= row[k].decimals)
+        k++;
+    if (i == n || row[1].a == t->r->how->dt_s || (k == SAMPLES_MIN && row[1].a > 0))
         return fail_at(err, &first,
                        "begins with %g and %g, which look like a factor, a number or a step and no samples: say how "
                        "many lines are none, --text skip=%d,factor=%g (motion.text; skip=0: both are samples)",
@@ -663,46 +646,57 @@ static Status check_motion(const Plain *t, Err *err)
     return STATUS_OK;
 }
 
+/* 0, 1, 2, ... or from another whole number on: these are samples, not seconds. */
+static int counts_samples(const Plain *t)
+{
+    const Row *row = t->r->row;
+    size_t k = 0;
+    while (k < t->n_rows && row[k * t->width].decimals == 0 && row[k * t->width].a == row[0].a + (double)k)
+        k++;
+    return t->width > 1 && t->n_rows > 1 && row[0].a == floor(row[0].a) && k == t->n_rows;
+}
+
 /* Which columns are times and channels, by their names, their numbers and what the header says. */
 static Status columns_as_found(Plain *t, double stated_dt, Err *err)
 {
     enum { COMPONENTS_MAX = 4 };
     Record *r = t->r;
+    const int named = is_named(t);
     size_t times = 0, rises = 0;
     const Row *row = r->row;
     const Lines first = {.path = t->l->path, .number = row[0].line};
 
     /* Times stand in the column that is named so, or in the first, where none is. */
-    for (size_t k = 0; is_named(t) && k < t->width && !t->is_timed; k++)
-        if ((t->is_timed = names_times(name_at(t, k))))
-            times = k;
-    if (is_named(t) && !t->is_timed && names_frequency(name_at(t, 0)))
+    while (named && times < t->width && !names_times(name_at(t, times)))
+        times++;
+    t->is_timed = named && times < t->width;
+    times = t->is_timed ? times : 0;
+    if (named && !t->is_timed && names_frequency(name_at(t, 0)))
         return fail_at(err, &t->names, "'%.*s' heads a spectrum; a motion is a function of time", line_shown(&t->names),
                        t->names.from);
-    int timed = t->width > 1 && !(is_named(t) && t->dt > 0 && !t->is_timed);
     if (t->width == 1 && !(t->dt > 0))
         return fail_at(err, &first,
                        "has one column and does not say its step; set motion.dt_s, or give times beside it");
+    int timed = t->width > 1 && !(named && t->dt > 0 && !t->is_timed);
 
     /* Without names: one motion row by row, whose number of samples is stated, or whose last row is shorter, while none
      * is as narrow as the components of a station and the first column does not rise like times; or times, perhaps with
      * a mistake; or columns of which one is wanted. */
-    if (t->width > 1 && !is_named(t)) {
+    if (t->width > 1 && !named) {
         for (size_t i = t->width; i < r->n; i += t->width)
             rises += row[i].a > row[i - t->width].a;
         const int mostly_rises = 4 * rises >= 3 * (t->n_rows - 1);
         const int is_wrapped = t->width > COMPONENTS_MAX && t->odd_line && t->odd_row + 1 == t->n_rows &&
-                               t->odd_width < t->width && !r->hints.channel && !mostly_rises;
+                               t->odd_width < t->width && !r->how->channel && !mostly_rises;
         if (t->dt > 0 && (t->count == r->n || is_wrapped)) {
             t->width = 1;
             t->n_rows = r->n;
             return name_channels(t, 1, 0, 0, err);
         }
-        if (t->odd_line || rises + 1 < t->n_rows) {
-            timed = !(t->dt > 0) && mostly_rises;
-            if (t->odd_line || (!timed && (!(t->dt > 0) || !r->hints.channel)))
-                return fail_unnamed(t, &first, err);
-        }
+        const int always_rises = !t->odd_line && rises + 1 >= t->n_rows;
+        timed = always_rises ? timed : !(t->dt > 0) && mostly_rises;
+        if (t->odd_line || (!always_rises && !timed && (!(t->dt > 0) || !r->how->channel)))
+            return fail_unnamed(t, &first, err);
     }
     TRY(check_rows(t, err));
     if (t->count > 1 && t->count != t->n_rows && t->count != r->n)
@@ -714,21 +708,22 @@ static Status columns_as_found(Plain *t, double stated_dt, Err *err)
                        "motion.dt_s=0.01); if they are seconds, name the column time_s",
                        row[0].a, row[t->width].a);
     timed = timed && (t->is_timed || !t->is_counted);
-    if (timed && is_named(t))
+    if (!timed)
+        return name_channels(t, t->width, 0, stated_dt, err);
+    if (named)
         TRY(check_times(t, name_at(t, times), err));
-    if (timed)
-        record_set_times(r, 0, t->width, times);
-    return name_channels(t, timed ? times : t->width, timed, stated_dt, err);
+    record_set_times(r, 0, t->width, times);
+    return name_channels(t, times, 1, stated_dt, err);
 }
 
 Status columns_read(Record *r, Lines *l, Err *err)
 {
     Plain plain = {.r = r, .l = l, .start = *l}, *t = &plain;
-    const TextForm *form = &r->hints.text;
+    const TextForm *form = &r->how->text;
     const int is_laid_out = form->pairs || form->per_line || form->value || form->time;
     TRY(read_table(t, err));
     const double stated_dt = t->dt;
-    t->dt = stated_dt > 0 ? stated_dt : r->hints.dt_s;
+    t->dt = stated_dt > 0 ? stated_dt : r->how->dt_s;
     if (!is_laid_out)
         TRY(check_motion(t, err));
     TRY(is_laid_out ? take_form(t, err) : columns_as_found(t, stated_dt, err));

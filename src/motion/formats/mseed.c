@@ -4,9 +4,9 @@
 
 #include "motion/formats/record.h"
 
-static int recognise(const unsigned char bytes[], size_t n)
+static int recognise(const char bytes[], size_t n)
 {
-    return n >= 64 && MS_ISVALIDHEADER((const char *)bytes);
+    return n >= 64 && MS_ISVALIDHEADER(bytes);
 }
 
 static void say_nothing(char *message)
@@ -70,12 +70,12 @@ static Status read_traces(Record *r, const char *path, const char *bytes, size_t
             !(t->samprate >= 1 / MOTION_STEP_MAX_S && t->samprate <= 1e5))
             continue;
         status = record_channel(r, &l, &c, err);
-        if (status == STATUS_OK) {
-            channel_named(c, "%s.%s.%s.%s", t->network, t->station, t->location, t->channel);
-            c->counts = 1;
-            c->dt = 1 / t->samprate;
-            c->n = t->numsamples;
-        }
+        if (status != STATUS_OK)
+            break;
+        channel_named(c, "%s.%s.%s.%s", t->network, t->station, t->location, t->channel);
+        c->counts = 1;
+        c->dt = 1 / t->samprate;
+        c->n = t->numsamples;
         for (int64_t i = 0; i < t->numsamples && status == STATUS_OK; i++) {
             const double a = t->sampletype == 'i'   ? ((const int32_t *)t->datasamples)[i]
                              : t->sampletype == 'f' ? ((const float *)t->datasamples)[i]
@@ -84,9 +84,7 @@ static Status read_traces(Record *r, const char *path, const char *bytes, size_t
         }
     }
     mst_freegroup(&group);
-    if (status == STATUS_OK && r->n_channels == 0)
-        return bad_data(err, "%s: miniSEED without samples", path);
-    return status;
+    return status == STATUS_OK && r->n_channels == 0 ? bad_data(err, "%s: miniSEED without samples", path) : status;
 }
 
 const BinaryFormat FORMAT_MSEED = {"mseed", recognise, read_traces};

@@ -1,6 +1,5 @@
 #include "motion/formats/record.h"
 
-#include <ctype.h>
 #include <stdarg.h>
 
 /* ---- rows -------------------------------------------------------------------------------------------------------- */
@@ -30,19 +29,13 @@ void record_free(Record *r)
 static int count_decimals(Cell c)
 {
     int n = 0, behind_point = 0;
-    for (const char *p = c.from; p < c.to; p++) {
-        double exponent = 0;
-        if (*p == '.' || *p == ',') {
-            behind_point = 1;
-        } else if (isdigit((unsigned char)*p)) {
-            n += behind_point;
-        } else if (*p != '+' && *p != '-') {
-            if (number_behind(p + 1, c.to, "", &exponent))
-                n -= (int)fmax(fmin(exponent, 400), -400);
-            break;
-        }
+    const char *p = c.from;
+    double exponent;
+    for (; p < c.to && (is_digit(*p) || strchr("+-.,", *p)); p++) {
+        behind_point |= *p == '.' || *p == ',';
+        n += behind_point && is_digit(*p);
     }
-    return n;
+    return p < c.to && number_behind(p + 1, c.to, "", &exponent) ? n - (int)fmax(fmin(exponent, 400), -400) : n;
 }
 
 Status record_add_cells(Record *r, Lines *l, int with_comma, size_t *n, Err *err)
@@ -114,18 +107,18 @@ static void copy_plain(char *out, size_t room, const char *from, const char *to)
 {
     size_t n = 0;
     for (; from < to && n + 1 < room; from++)
-        if (!isspace((unsigned char)*from))
-            out[n++] = isprint((unsigned char)*from) ? *from : '?';
-        else if (n && from + 1 < to && !isspace((unsigned char)from[1]))
+        if (!is_blank(*from))
+            out[n++] = *from >= ' ' && *from <= '~' ? *from : '?';
+        else if (n && from + 1 < to && !is_blank(from[1]))
             out[n++] = ' ';
     out[n] = 0;
 }
 
 void channel_name(Channel *c, const char *from, const char *to)
 {
-    while (from < to && (isspace((unsigned char)*from) || strchr("\"'", *from)))
+    while (from < to && (is_blank(*from) || strchr("\"'", *from)))
         from++;
-    while (to > from && (isspace((unsigned char)to[-1]) || strchr("\"'", to[-1])))
+    while (to > from && (is_blank(to[-1]) || strchr("\"'", to[-1])))
         to--;
     copy_plain(c->name, sizeof c->name, from, to);
 }
@@ -168,17 +161,15 @@ void channel_unit(Channel *c, const char *from, const char *to)
 
 int line_is_marker(const Lines *l)
 {
-    if (line_begins(l, "*"))
+    if (*l->from == '*')
         return line_has(l, "end");
-    if (line_begins(l, "nan") || line_begins(l, "inf"))
-        return 0;
-    return isalpha((unsigned char)*l->from) || strchr("/|#&", *l->from) || line_begins(l, "->");
+    return (is_letter(*l->from) && !line_begins(l, "nan|inf")) || strchr("/|#&", *l->from) || line_begins(l, "->");
 }
 
 int line_has_letters(const Lines *l)
 {
     for (const char *p = l->from; p < l->to; p++)
-        if (isalpha((unsigned char)*p) && !strchr("eEdD", *p))
+        if (is_letter(*p) && !strchr("eEdD", *p))
             return 1;
     return 0;
 }
@@ -206,8 +197,7 @@ Status record_block(Record *r, Lines *l, double count, int width, size_t lines_b
         if (n % each)
             return fail_at(err, l, "%zu numbers are not pairs of time and acceleration", n);
         for (size_t i = 0; i < n; i += each)
-            TRY(record_add(
-                r, (Row){.t = x[i], .a = x[i + each - 1], .line = l->number, .decimals = c->is_timed ? 6 : 3}, err));
+            TRY(record_add(r, (Row){x[i], x[i + each - 1], l->number, c->is_timed ? 6 : 3}, err));
         c->n += n / each;
     }
     if (c->n < wanted)

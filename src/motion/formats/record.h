@@ -39,14 +39,8 @@ typedef struct {
 } Channel;
 
 typedef struct {
-    double dt_s;         /* of a file that has neither times nor a step; 0: none was given */
-    const char *channel; /* the one that is wanted; NULL: none was named */
-    TextForm text;
-} ReadHints;
-
-typedef struct {
-    ReadHints hints;
-    int deep; /* in so many archives */
+    const MotionHow *how; /* channel NULL: none was named */
+    int deep;             /* in so many archives */
     Row *row;
     size_t n, capacity;
     Channel channel[CHANNELS_MAX];
@@ -61,14 +55,10 @@ Status text_read(Record *r, Lines *l, Err *err);
 /* The last resort of it: plain columns. */
 Status columns_read(Record *r, Lines *l, Err *err);
 
-/* What motion.text might read the text by, its first numbers being samples; empty: there are no numbers. */
-enum { TEXT_FORM_MAX = 64 };
-void text_form_suggest(const Lines *start, char form[TEXT_FORM_MAX]);
-
 /* Files that are no text, and JSON; the first that recognises the bytes reads them. */
 typedef struct {
     const char *name;
-    int (*recognise)(const unsigned char bytes[], size_t n);
+    int (*recognise)(const char bytes[], size_t n);
     Status (*read)(Record *r, const char *path, const char *bytes, size_t n, Err *err);
 } BinaryFormat;
 extern const BinaryFormat FORMAT_MSEED, FORMAT_SAC, FORMAT_SIMCENTER;
@@ -83,7 +73,7 @@ Status sac_text_read(Record *r, Lines *l, Err *err);
  * members. What unpacks to more is refused. */
 #define ARCHIVE_BYTES_MAX ((size_t)1 << 28)
 
-int archive_is(const unsigned char bytes[], size_t n);
+int archive_is(const char bytes[], size_t n);
 
 /* Calls take for every file in the order of the archive; name: with folders. */
 typedef Status (*ArchiveFn)(const char *name, const char *bytes, size_t n, void *user, Err *err);

@@ -18,7 +18,7 @@ enum {
     DELTA = 0,
     DEPMIN = 1,
     DEPMAX = 2,
-    NVHDR = 6,
+    NVHDR = N_REALS + 6,
     NPTS = 9,
     IFTYPE = 15,
     IDEP = 16,
@@ -27,8 +27,8 @@ enum {
 };
 static const double UNDEFINED = -12345;
 
-/* Word k of 4 bytes; the other byte order: swapped. */
-static uint32_t word_at(const char *bytes, size_t k, int swapped)
+/* Word k of 4 bytes, of an integer or of a real; the other byte order: swapped. */
+static int32_t word_at(const char *bytes, size_t k, int swapped)
 {
     uint32_t w;
     memcpy(&w, bytes + 4 * k, sizeof w);
@@ -37,15 +37,10 @@ static uint32_t word_at(const char *bytes, size_t k, int swapped)
 
 static double real_at(const char *bytes, size_t k, int swapped)
 {
-    const uint32_t w = word_at(bytes, k, swapped);
+    const int32_t w = word_at(bytes, k, swapped);
     float x;
     memcpy(&x, &w, sizeof x);
     return x;
-}
-
-static int32_t integer_at(const char *bytes, int k, int swapped)
-{
-    return word_at(bytes, N_REALS + k, swapped);
 }
 
 static int is_version(int32_t v)
@@ -53,10 +48,9 @@ static int is_version(int32_t v)
     return v == 6 || v == 7;
 }
 
-static int recognise(const unsigned char bytes[], size_t n)
+static int recognise(const char bytes[], size_t n)
 {
-    const char *b = (const char *)bytes;
-    return n >= HEADER && (is_version(integer_at(b, NVHDR, 0)) || is_version(integer_at(b, NVHDR, 1)));
+    return n >= HEADER && (is_version(word_at(bytes, NVHDR, 0)) || is_version(word_at(bytes, NVHDR, 1)));
 }
 
 /* The largest magnitude that the header states, where both ends are known; in the unit of the samples. */
@@ -72,9 +66,11 @@ static void check_range(Channel *c, const Record *r, double low, double high)
         c->warning = "its largest sample is not the one that its header states (DEPMIN, DEPMAX)";
 }
 
-/* Refuses a header that is none of an acceleration in equal steps. */
-static Status check_header(const char *path, const double reals[], const double integers[], Err *err)
+/* Refuses a header that is none of an acceleration in equal steps; else makes its channel, of counts. */
+static Status take_header(Record *r, const Lines *l, const double reals[], const double integers[], Channel **c,
+                          Err *err)
 {
+    const char *path = l->path;
     const double quantity = integers[IDEP], delta = reals[DELTA], npts = integers[NPTS];
     if (quantity == 6 || quantity == 7)
         return fail_sub(err, STATUS_BAD_DATA, SUB_NO_RECORD, "%s: not an acceleration: IDEP in its SAC header says %s",
@@ -85,6 +81,9 @@ static Status check_header(const char *path, const double reals[], const double 
         return bad_data(err, "%s: no usable step in its SAC header: DELTA is %g", path, delta);
     if (!(npts >= 2 && npts <= 1e8))
         return bad_data(err, "%s: no usable number of points in its SAC header: NPTS is %g", path, npts);
+    TRY(record_channel(r, l, c, err));
+    (*c)->counts = 1;
+    (*c)->dt = delta;
     return STATUS_OK;
 }
 
@@ -92,23 +91,21 @@ static Status check_header(const char *path, const double reals[], const double 
 static Status read_binary(Record *r, const char *path, const char *bytes, size_t n, Err *err)
 {
     const Lines l = {.path = path, .number = 1};
-    const int swapped = !is_version(integer_at(bytes, NVHDR, 0));
+    const int swapped = !is_version(word_at(bytes, NVHDR, 0));
     const char *component = bytes + COMPONENT_AT;
     double reals[N_REALS], integers[N_INTEGERS];
     Channel *c;
     for (int i = 0; i < N_REALS; i++)
         reals[i] = real_at(bytes, i, swapped);
     for (int i = 0; i < N_INTEGERS; i++)
-        integers[i] = integer_at(bytes, i, swapped);
-    TRY(check_header(path, reals, integers, err));
+        integers[i] = word_at(bytes, N_REALS + i, swapped);
+    TRY(take_header(r, &l, reals, integers, &c, err));
     const size_t npts = (size_t)integers[NPTS];
     if ((n - HEADER) / 4 != npts && n != HEADER + 4 * npts + FOOTER)
         return bad_data(err, "%s: holds %zu samples, not the %zu that its header announces", path, (n - HEADER) / 4,
                         npts);
-    TRY(record_channel(r, &l, &c, err));
-    c->counts = 1;
     c->n = npts;
-    c->dt = round(reals[DELTA] * 1e7) / 1e7; /* a float of 0.01 is 0.0099999998 */
+    c->dt = round(c->dt * 1e7) / 1e7; /* a float of 0.01 is 0.0099999998 */
     if (strnlen(component, 8) > 0 && strncmp(component, "-12345", 6) != 0)
         channel_name(c, component, component + strnlen(component, 8));
     for (size_t i = 0; i < c->n; i++) {
@@ -142,16 +139,13 @@ Status sac_text_read(Record *r, Lines *l, Err *err)
     Channel *c;
     TRY(header_numbers(l, 15, N_REALS, reals, err));
     TRY(header_numbers(l, 10, N_INTEGERS, integers, err));
-    TRY(check_header(l->path, reals, integers, err));
-    TRY(record_channel(r, l, &c, err));
-    c->counts = 1;
+    TRY(take_header(r, l, reals, integers, &c, err));
     for (int i = 0; i < WORD_LINES; i++) {
         if (!lines_next(l))
             return fail_too_short(l, "header", err);
         if (i == 6 && l->to - l->raw > 16 && strncmp(l->raw + 16, "-12345", 6) != 0) /* words 18 to 20 */
             channel_name(c, l->raw + 16, l->to);
     }
-    c->dt = reals[DELTA];
     TRY(record_block(r, l, integers[NPTS], 15, 0, err));
     check_range(c, r, reals[DEPMIN], reals[DEPMAX]);
     return STATUS_OK;

@@ -16,7 +16,7 @@ typedef struct {
     double count; /* "numSteps"; 0: none is stated */
 } Place;
 
-static size_t blanks_before(const unsigned char bytes[], size_t n)
+static size_t blanks_before(const char bytes[], size_t n)
 {
     size_t i = n > 3 && memcmp(bytes, "\xef\xbb\xbf", 3) == 0 ? 3 : 0; /* UTF-8 byte order mark */
     while (i < n && bytes[i] && strchr(" \t\r\n", bytes[i]))
@@ -24,7 +24,7 @@ static size_t blanks_before(const unsigned char bytes[], size_t n)
     return i;
 }
 
-static int recognise(const unsigned char bytes[], size_t n)
+static int recognise(const char bytes[], size_t n)
 {
     const size_t i = blanks_before(bytes, n);
     return i < n && bytes[i] == '{';
@@ -121,7 +121,7 @@ static Status read(Record *r, const char *path, const char *bytes, size_t n, Err
 {
     json_error_t why;
     const Lines l = {.path = path, .number = 1};
-    const size_t begin = blanks_before((const unsigned char *)bytes, n);
+    const size_t begin = blanks_before(bytes, n);
     while (n > begin && strchr("\x1a", bytes[n - 1])) /* Ctrl-Z or NUL at the end */
         n--;
     json_t *root = json_loadb(bytes + begin, n - begin, 0, &why);

@@ -16,7 +16,7 @@ int lines_skip(Lines *l, int n)
 
 int lines_next_filled(Lines *l)
 {
-    for (const char *p = l->next; p < l->end && isspace((unsigned char)*p); p++)
+    for (const char *p = l->next; p < l->end && is_blank(*p); p++)
         if (*p == l->mark) {
             l->number++;
             l->next = p + 1;
@@ -35,12 +35,6 @@ Lines lines_ahead(const Lines *l)
 int line_shown(const Lines *l)
 {
     return (int)MIN_OF(l->to - l->from, 40);
-}
-
-int line_begins(const Lines *l, const char *word)
-{
-    const size_t n = strlen(word);
-    return (size_t)(l->to - l->from) >= n && strncasecmp(l->from, word, n) == 0;
 }
 
 const char *find_word(const char *from, const char *to, const char *word)
@@ -66,9 +60,14 @@ int text_is(Match how, const char *from, const char *to, const char *words)
     return 0;
 }
 
-int line_has(const Lines *l, const char *word)
+int line_begins(const Lines *l, const char *words)
 {
-    return find_word(l->from, l->to, word) != NULL;
+    return text_is(BEGINS, l->from, l->to, words);
+}
+
+int line_has(const Lines *l, const char *words)
+{
+    return text_is(HOLDS, l->from, l->to, words);
 }
 
 /* ---- numbers -------------------------------------------------------------------------------------------------- */
@@ -128,7 +127,7 @@ static const char *number_end(const char *p, const char *to)
         return begin;
     const char *power = p < to && strchr("eEdD", *p) ? p + 1 : to;
     power = power < to && strchr("+-", *power) ? power + 1 : power;
-    return power < to && isdigit((unsigned char)*power) ? skip(power, to, DIGITS) : p;
+    return power < to && is_digit(*power) ? skip(power, to, DIGITS) : p;
 }
 
 /* Where the number behind `word` begins; NULL: there is no such word. */
@@ -165,7 +164,7 @@ int quantity_behind(const char *from, const char *to, const char *word, int is_r
         p = skip(number_end(behind(p + 1, to, ""), to), to, " \t");
     }
     const char *end = p;
-    while (end < to && isalpha((unsigned char)*end))
+    while (end < to && is_letter(*end))
         end++;
     for (size_t i = 0; i < N_OF(UNITS) && !(end < to && strchr("-^/", *end)); i++) /* s-1, m/s2 */
         if (text_is(EQUALS, p, end, UNITS[i].words)) {
@@ -203,18 +202,12 @@ Status line_numbers(const Lines *l, int width, size_t max, double x[], size_t *n
 
 int format_width(const Lines *l)
 {
-    for (const char *p = l->from; p < l->to; p++) {
-        int repeat = 0, width = 0;
-        if (*p != '(')
-            continue;
-        const char *q = p + 1;
-        while (q < l->to && isdigit((unsigned char)*q) && repeat < 1000)
-            repeat = 10 * repeat + *q++ - '0';
-        if (repeat == 0 || q >= l->to || !strchr("fFeEgGiI", *q))
-            continue;
-        for (q++; q < l->to && isdigit((unsigned char)*q) && width < 1000;)
-            width = 10 * width + *q++ - '0';
-        if (width > 1 && width < NUMBER_MAX)
+    for (const char *p = l->from; (p = memchr(p, '(', l->to - p)); p++) {
+        char format[NUMBER_MAX];
+        int repeat, width;
+        snprintf(format, sizeof format, "%.*s", (int)(l->to - p), p);
+        if (sscanf(format, "(%3d%*1[fFeEgGiI]%3d", &repeat, &width) == 2 && is_digit(format[1]) && repeat > 0 &&
+            width > 1 && width < NUMBER_MAX)
             return width;
     }
     return 0;
@@ -236,7 +229,7 @@ MotionUnit unit_of(const char *from, const char *to)
         const int is_second = n && tidy[n - 1] == 's' && to - p >= 2 && c == 'e' && strchr("cCgG", p[1]);
         if (is_second)
             p++;
-        else if (!isspace((unsigned char)c) && !strchr("^*\xc2", c))
+        else if (!is_blank(c) && !strchr("^*\xc2", c))
             tidy[n++] = c == '\xb2' ? '2' : c;
     }
     for (MotionUnit unit = UNIT_M_S2; unit <= UNIT_G; unit++)
@@ -251,11 +244,10 @@ int is_quantity(const char *from, const char *to)
         "m|cm|mm|km|in|inch|inches|ft|feet|n|kn|mn|kip|kips|lb|lbf|pa|kpa|mpa|psi|ksi|nm|knm|v|mv|volt|volts|"
         "rad|mrad|deg|hz|s|sec|second|seconds|ms|kg|t|j|kj|g|mg|gal|gals|milli|micro|of|x";
     int n_words = 0, n_letters = 0;
-    while (from < to && isspace((unsigned char)*from))
-        from++;
+    from = skip(from, to, " \t\n\r\v\f");
     for (const char *p = from; p < to;) {
         const char *word = p;
-        while (p < to && isalpha((unsigned char)*p))
+        while (p < to && is_letter(*p))
             p++;
         if (p > word && !text_is(EQUALS, word, p, UNITS))
             return 0;

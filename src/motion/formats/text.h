@@ -4,14 +4,16 @@
 #pragma once
 
 #include "base/csv.h"
+#include "base/text.h"
+#include "base/units.h"
 #include "motion/options.h"
 
-int lines_skip(Lines *l, int n);                   /* n lines on; 0: the text is too short */
-int lines_next_filled(Lines *l);                   /* the next line that is not blank */
-Lines lines_ahead(const Lines *l);                 /* the next line that is not blank, l stays; from == NULL: none */
-int line_shown(const Lines *l);                    /* how many of its bytes a message shows */
-int line_begins(const Lines *l, const char *word); /* without regard to case */
-int line_has(const Lines *l, const char *word);
+int lines_skip(Lines *l, int n);                    /* n lines on; 0: the text is too short */
+int lines_next_filled(Lines *l);                    /* the next line that is not blank */
+Lines lines_ahead(const Lines *l);                  /* the next line that is not blank, l stays; from == NULL: none */
+int line_shown(const Lines *l);                     /* how many of its bytes a message shows */
+int line_begins(const Lines *l, const char *words); /* one of the words parted by |, without regard to case */
+int line_has(const Lines *l, const char *words);
 
 const char *find_word(const char *from, const char *to, const char *word); /* without regard to case; NULL: none */
 
@@ -36,6 +38,8 @@ Status line_numbers(const Lines *l, int width, size_t max, double x[], size_t *n
 
 /* w of a Fortran format (8F9.6) that the line names, 0: none. */
 int format_width(const Lines *l);
+
+static const double UNIT_IN_M_S2[] = {0, 1, 0.01, GRAVITY, 1}; /* of counts: as many as motion.unit says are a m/s2 */
 
 /* The unit of acceleration that all of the text is, "cm/sec^2", "M_S2", "Gal", "g"; UNIT_FROM_FILE: none. */
 MotionUnit unit_of(const char *from, const char *to);
