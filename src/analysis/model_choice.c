@@ -4,6 +4,7 @@
 #include "settings/settings.h"
 
 enum { DESIGNS = 3, COPIES = 3, STRUCTURES = 8, SIMULATIONS_MIN = 60 };
+enum { BARE = LADDER_SCENES - 1 }; /* of LADDER_SCENE: the building alone */
 static const double SHARE = 0.03, GAP_SD_M = 1e-3;
 
 /* What adds up over time: it hangs on the weak end of a record, where peaks do not. */
@@ -65,37 +66,26 @@ static Status open_records(Choosing *c, Problem *p, const Settings *s, Err *err)
     return tower_open_scenes(p, s, c->n_records, path, c->n_records, scene, err);
 }
 
-/* Where the strong part of all records is over; fits: before the end of each of them. */
-static Status find_strong_part(Choosing *c, double *strong_s, int *fits, Err *err)
+/* The effects of the scene; in a study's choice those that are not open are kept as the settings have them. */
+static Status open_effects(Choosing *c, Err *err)
 {
     Problem p;
     const Scenario *w;
-    double shortest = INFINITY;
-    *strong_s = 0;
+    double strong_s = 0, shortest = INFINITY; /* where the strong part of all records is over; the shortest record */
     TRY(open_records(c, &p, &c->s, err));
     Status status = STATUS_OK;
     for (size_t i = 0; i < c->n_records && (status = tower_acquire(p.self, i, &w, err)) == STATUS_OK; i++) {
-        const double period = 2 * M_PI / scene_building(w->scene)->omega[0];
-        *strong_s = fmax(*strong_s, motion_strong_part(&w->motion, period));
+        strong_s = fmax(strong_s, motion_strong_part(&w->motion, 2 * M_PI / scene_building(w->scene)->omega[0]));
         shortest = fmin(shortest, motion_duration(&w->motion));
         tower_release(p.self, i);
     }
     problem_close(&p);
-    *fits = *strong_s < shortest;
-    return status;
-}
-
-/* The effects of the scene; in a study's choice those that are not open are kept as the settings have them. */
-static Status open_effects(Choosing *c, Err *err)
-{
-    double strong_s;
-    int fits;
-    TRY(find_strong_part(c, &strong_s, &fits, err));
+    TRY(status);
     TRY(ladder_effects(&c->s, strong_s, c->form, c->l, &c->all, err));
     for (size_t i = 0; i < c->l->n && c->form == LADDER_OPEN; i++) {
         LadderEffect *e = &c->l->effect[i];
         if (strcmp(e->key, "sim.duration_s") == 0)
-            e->is_set |= c->judged & ADDED_UP || !fits;
+            e->is_set |= c->judged & ADDED_UP || !(strong_s < shortest);
         e->is_kept = e->is_set;
         if (e->is_set)
             memcpy(e->without, e->with, sizeof e->without);
@@ -172,22 +162,31 @@ static int failing(const Tried *t)
     return j;
 }
 
-/* Every case in all scenes by those settings: by the set, or is_all. */
+/* Every case in all scenes by those settings: by the set, or is_all. Cases under the same record have the building
+ * alone in common, which the first of them simulates. */
 static Status simulate_cases(Choosing *c, const Settings *with, int is_all, Err *err)
 {
     Problem p;
     SimTask *task;
     Settings s = *with;
+    const Measured *bare[TOWER_RECORDS_MAX] = {NULL};
+    size_t n = 0;
     s.sim.replicates = (long)c->n_copies;
     TRY_ROOM(task, c->n_cases * LADDER_SCENES, "simulations", err);
-    for (size_t i = 0; i < c->n_cases * LADDER_SCENES; i++) {
-        Case *k = &c->at[i / LADDER_SCENES];
-        task[i] = task_of(is_all ? &k->all : &k->set, (int)(i % LADDER_SCENES), c->n_copies, k, k->record);
+    for (size_t i = 0; i < c->n_cases; i++) {
+        Case *k = &c->at[i];
+        Tried *t = is_all ? &k->all : &k->set;
+        for (int j = 0; j < (bare[k->record] ? BARE : LADDER_SCENES); j++)
+            task[n++] = task_of(t, j, c->n_copies, k, k->record);
+        bare[k->record] = bare[k->record] ? bare[k->record] : &t->scene[BARE];
     }
     Status status = open_records(c, &p, &s, err);
-    THEN(status, run_tasks(c, &p, c->n_cases * LADDER_SCENES, task, err));
-    for (size_t i = 0; i < c->n_cases && status == STATUS_OK; i++)
-        take_copies(is_all ? &c->at[i].all : &c->at[i].set, c->n_copies);
+    THEN(status, run_tasks(c, &p, n, task, err));
+    for (size_t i = 0; i < c->n_cases && status == STATUS_OK; i++) {
+        Tried *t = is_all ? &c->at[i].all : &c->at[i].set;
+        take_copies(t, c->n_copies);
+        t->scene[BARE] = *bare[c->at[i].record];
+    }
     free(task);
     return status;
 }
@@ -259,17 +258,9 @@ static int is_asked(const Choosing *c, const Case *k, size_t i, SceneKind scene)
     return is_open(c, e) && !e->is_needed && reaches(e, scene) && !(scene == SCENE_NO_CORE && c->has_bare[k->record]);
 }
 
-static size_t simulations_of(const Choosing *c, const Case *k)
-{
-    size_t n = c->n_structures + 1 + !c->has_bare[k->record];
-    for (size_t i = 0; i < c->l->n; i++)
-        for (int scene = 0; scene < LADDER_SCENES; scene++)
-            n += is_asked(c, k, i, LADDER_SCENE[scene]);
-    return n;
-}
-
-/* How the design scatters as built, over all cases. */
-static void learn_scatter(Choosing *c, const Case *k, const ReplicateSummary *as_built)
+/* What each effect changes in a case, and how the design scatters as built, over all cases. The model with all has
+ * worked in it. */
+static void learn(Choosing *c, Case *k, const ReplicateSummary *as_built, const Tried without[LADDER_MAX])
 {
     Ladder *l = c->l;
     for (int m = 0; m < LADDER_MEASURES; m++) {
@@ -279,12 +270,6 @@ static void learn_scatter(Choosing *c, const Case *k, const ReplicateSummary *as
         if (c->n_cases == 1)
             l->value[m] = k->all.scene[0].value[LADDER_MEASURE[m]];
     }
-}
-
-/* What each effect changes in a case. The model with all has worked in it. */
-static void learn(Choosing *c, Case *k, const Tried without[LADDER_MAX])
-{
-    Ladder *l = c->l;
     for (size_t i = 0; i < l->n; i++) {
         LadderEffect *e = &l->effect[i];
         double change[LADDER_SCENES][LADDER_MEASURES] = {{0}};
@@ -330,7 +315,7 @@ static Status try_case(Choosing *c, size_t record, const double *x, Err *why, Er
     for (int j = 0; j < LADDER_SCENES - c->has_bare[record]; j++)
         task[n++] = task_of(&k->all, j, c->n_structures, k, 0);
     task->summary = &as_built;
-    k->all.scene[2] = c->bare[record];
+    k->all.scene[BARE] = c->bare[record];
     for (size_t i = 0; i < l->n; i++) {
         const LadderEffect *e = &l->effect[i];
         snprintf(scene[1 + i].setting, sizeof scene->setting, "%s=%s", e->key, e->is_finer ? e->with : e->without);
@@ -344,7 +329,7 @@ static Status try_case(Choosing *c, size_t record, const double *x, Err *why, Er
     for (size_t i = 0; i < l->n; i++)
         if (is_asked(c, k, i, SCENE_IMPACT))
             take_copies(&without[i], c->n_each);
-    c->bare[record] = k->all.scene[2];
+    c->bare[record] = k->all.scene[BARE];
     const int fails = failing(&k->all);
     if (fails < LADDER_SCENES) {
         bad_data(why, "the model with all effects fails (%s): %s", SCENES[LADDER_SCENE[fails]].words,
@@ -352,58 +337,52 @@ static Status try_case(Choosing *c, size_t record, const double *x, Err *why, Er
         return STATUS_OK;
     }
     c->n_cases++;
-    learn_scatter(c, k, &as_built);
-    learn(c, k, without);
+    learn(c, k, &as_built, without);
     c->has_bare[record] = 1;
     return STATUS_OK;
-}
-
-/* Designs whose gaps are spread up to where the bare building sways. */
-static Status spread_designs(Choosing *c, DesignSpace *space, Err *err)
-{
-    Problem p;
-    TRY(open_records(c, &p, &c->all, err));
-    *space = *tower_design(tower_of(&p));
-    TRY(run_tasks(c, &p, 1, &(SimTask){.kind = SCENE_NO_CORE, .parts = c->bare}, err));
-    const double sway_m = c->bare[0].outcome == RUN_OK ? c->bare[0].value[MEASURE_J1] : INFINITY;
-    c->has_bare[0] = 0; /* what each effect changes there is not known yet */
-    for (size_t i = 0; i < DESIGNS; i++)
-        design_spread(space, &c->s.design, i, DESIGNS, sway_m, c->X + i * (size_t)space->n_var);
-    return STATUS_OK;
-}
-
-/* Every design under every record: first each of both once. */
-static Status try_cases(Choosing *c, size_t n_var, Err *err)
-{
-    const size_t n = c->n_records;
-    Err why = {0};
-    for (size_t i = 0; i < DESIGNS * n; i++) {
-        const size_t record = i % n, design = (i + (n % DESIGNS == DESIGNS - 1 ? 0 : i / n)) % DESIGNS;
-        const size_t to_try = (COPIES + 2) * (c->n_cases + 1);
-        if (c->n_cases > 0 && c->used + simulations_of(c, &(Case){.record = record}) + to_try > c->most)
-            break;
-        TRY(try_case(c, record, c->X + design * n_var, &why, err));
-    }
-    return c->n_cases > 0
-               ? STATUS_OK
-               : bad_data(err, "sim.model: %s; set sim.model = given, and the effects that the scene needs", why.text);
 }
 
 /* -- all of it ----------------------------------------------------------------------------------------------------- */
 
 static Status choose(Choosing *c, Err *err)
 {
+    Problem p;
     DesignSpace space;
+    Err why = {0};
     size_t n_open = 0;
+    const size_t n = c->n_records;
     TRY(open_effects(c, err));
     for (size_t i = 0; i < c->l->n; i++)
         n_open += !c->l->effect[i].is_set;
     if (n_open == 0)
         return STATUS_OK;
-    TRY_ROOM(c->at, DESIGNS * c->n_records, "designs", err);
-    TRY(spread_designs(c, &space, err));
-    TRY(try_cases(c, (size_t)space.n_var, err));
-    return settle(c, err);
+
+    /* 1. Designs whose gaps are spread up to where the bare building sways. What each effect changes there is not known
+     * yet. */
+    TRY_ROOM(c->at, DESIGNS * n, "designs", err);
+    TRY(open_records(c, &p, &c->all, err));
+    space = *tower_design(tower_of(&p));
+    TRY(run_tasks(c, &p, 1, &(SimTask){.kind = SCENE_NO_CORE, .parts = c->bare}, err));
+    const double sway_m = c->bare[0].outcome == RUN_OK ? c->bare[0].value[MEASURE_J1] : INFINITY;
+    for (size_t i = 0; i < DESIGNS; i++)
+        design_spread(&space, &c->s.design, i, DESIGNS, sway_m, c->X + i * (size_t)space.n_var);
+
+    /* 2. Every design under every record, first each of both once, as long as the set can still be tried. */
+    for (size_t i = 0; i < DESIGNS * n; i++) {
+        const size_t record = i % n, design = (i + (n % DESIGNS == DESIGNS - 1 ? 0 : i / n)) % DESIGNS;
+        const Case k = {.record = record};
+        size_t to_use = c->used + c->n_structures + 1 + !c->has_bare[record] + (COPIES + 1) * (c->n_cases + 1) +
+                        MIN_OF(c->n_cases + 1, n); /* the building alone: once under each record */
+        for (size_t e = 0; e < c->l->n; e++)
+            for (int scene = 0; scene < LADDER_SCENES; scene++)
+                to_use += is_asked(c, &k, e, LADDER_SCENE[scene]);
+        if (c->n_cases > 0 && to_use > c->most)
+            break;
+        TRY(try_case(c, record, c->X + design * (size_t)space.n_var, &why, err));
+    }
+    return c->n_cases > 0
+               ? settle(c, err)
+               : bad_data(err, "sim.model: %s; set sim.model = given, and the effects that the scene needs", why.text);
 }
 
 static void end(Choosing *c)
