@@ -24,24 +24,6 @@ static void spread(const Measured *result, const Measured moved[], double sd[])
     }
 }
 
-/* The tasks of one design; x (ESTIMATE_PATTERNS, n_var) has room for the designs. Returns how many. */
-static size_t list_tasks(const Problem *p, const SimTask *task, int moves, double x[], SimTask out[AGAIN],
-                         Measured again[AGAIN])
-{
-    out[0] = (SimTask){.kind = task->kind, .x = task->x, .scene = task->scene, .level = 1, .parts = again};
-    if (!moves || task->kind != SCENE_IMPACT)
-        return 1;
-    for (uint32_t i = 0; i < ESTIMATE_PATTERNS; i++) {
-        double *moved = x + i * p->n_var;
-        memcpy(moved, task->x, p->n_var * sizeof *moved);
-        Random r = random_stream(1, RANDOM_GRAZING, i, 0);
-        for (int j = 0; j < tower_design(tower_of(p))->n_gaps; j++)
-            moved[j] = fmax(0, moved[j] + (random_uniform(&r) < 0.5 ? -ESTIMATE_GAP_M : ESTIMATE_GAP_M));
-        out[1 + i] = (SimTask){.kind = task->kind, .x = moved, .scene = task->scene, .parts = &again[1 + i]};
-    }
-    return AGAIN;
-}
-
 Status estimate_designs(const Problem *p, size_t n, const SimTask tasks[], const SimResult results[], double error[],
                         double sd[], Err *err)
 {
@@ -49,9 +31,23 @@ Status estimate_designs(const Problem *p, size_t n, const SimTask tasks[], const
     SimTask *list = calloc(n * AGAIN, sizeof *list);
     double *x = calloc(n * ESTIMATE_PATTERNS * p->n_var, sizeof *x);
     size_t n_tasks = 0;
-    for (size_t i = 0; again && list && x && i < n; i++)
-        n_tasks += list_tasks(p, &tasks[i], sd != NULL, x + i * ESTIMATE_PATTERNS * p->n_var, list + n_tasks,
-                              again + i * AGAIN);
+    for (size_t i = 0; again && list && x && i < n; i++) {
+        const SimTask *task = &tasks[i];
+        double *moved = x + i * ESTIMATE_PATTERNS * p->n_var;
+        for (uint32_t k = 0; k < (sd && task->kind == SCENE_IMPACT ? AGAIN : 1); k++) {
+            SimTask *once = &list[n_tasks++];
+            *once = (SimTask){.kind = task->kind, .x = task->x, .scene = task->scene, .parts = &again[i * AGAIN + k]};
+            once->level = k == 0;
+            if (k == 0)
+                continue;
+            memcpy(moved, task->x, p->n_var * sizeof *moved);
+            Random r = random_stream(1, RANDOM_GRAZING, k - 1, 0);
+            for (int j = 0; j < tower_design(tower_of(p))->n_gaps; j++)
+                moved[j] = fmax(0, moved[j] + (random_uniform(&r) < 0.5 ? -ESTIMATE_GAP_M : ESTIMATE_GAP_M));
+            once->x = moved;
+            moved += p->n_var;
+        }
+    }
     const Status status = n_tasks >= n
                               ? tower_run(p, n_tasks, list, NULL, NULL, err)
                               : fail(err, STATUS_NO_MEMORY, "no memory for the estimated errors of %zu simulations", n);

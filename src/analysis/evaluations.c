@@ -49,7 +49,7 @@ Status evaluations_add_suite(Evaluations *e, const char *suite, Err *err)
 
 /* ---- reading ----------------------------------------------------------------------------------------------------- */
 
-static Status open_tower(Evaluations *e, const Settings *settings, Err *err)
+Status evaluations_read(Evaluations *e, const Settings *settings, Err *err)
 {
     const size_t n = e->n_records * e->n_levels;
     Settings s = *settings;
@@ -70,36 +70,24 @@ static Status open_tower(Evaluations *e, const Settings *settings, Err *err)
                                           : fail_memory(err, n * N_SCENES, "simulations");
     free(paths);
     free(scenes);
-    return status;
-}
-
-static Status describe_run(Evaluations *e, size_t i, Err *err)
-{
-    EvaluatedRun *run = &e->run[i];
-    Motion m;
-    TRY(tower_motion(&e->tower, i, &m, err));
-    run->pga_g = motion_peak(&m) / GRAVITY;
-    run->scale = m.scale;
-    run->stretch = m.stretch;
-    motion_free(&m);
-    return STATUS_OK;
-}
-
-Status evaluations_read(Evaluations *e, const Settings *s, Err *err)
-{
-    TRY(open_tower(e, s, err));
-    e->is_estimated = s->sim.engine == ENGINE_FAST;
-    TRY_ROOM(e->run, e->n_records * e->n_levels, "records", err);
-    for (size_t i = 0; i < e->n_records; i++) {
-        EvaluatedRecord *r = &e->record[i];
-        for (size_t l = 0; l < e->n_levels; l++)
-            e->run[i * e->n_levels + l].record = r;
-        for (size_t l = 0; l < e->n_levels && r->readable == STATUS_OK; l++)
-            r->readable = describe_run(e, i * e->n_levels + l, &r->why);
-        e->n_read += r->readable == STATUS_OK;
+    TRY(status);
+    e->is_estimated = s.sim.engine == ENGINE_FAST;
+    TRY_ROOM(e->run, n, "records", err);
+    for (size_t i = 0; i < n; i++) {
+        EvaluatedRecord *r = &e->record[i / e->n_levels];
+        Motion m;
+        e->run[i].record = r;
+        if (r->readable == STATUS_OK && (r->readable = tower_motion(&e->tower, i, &m, &r->why)) == STATUS_OK) {
+            e->run[i].pga_g = motion_peak(&m) / GRAVITY;
+            e->run[i].scale = m.scale;
+            e->run[i].stretch = m.stretch;
+            motion_free(&m);
+        }
         if (r->readable != STATUS_OK && (!r->from_folder || r->readable == STATUS_NO_MEMORY))
             return fail(err, r->readable, "%s", r->why.text);
     }
+    for (size_t i = 0; i < e->n_records; i++)
+        e->n_read += e->record[i].readable == STATUS_OK;
     return STATUS_OK;
 }
 
@@ -111,89 +99,58 @@ int evaluated_has(const Evaluations *e, const EvaluatedRun *run, SceneKind which
            (which == SCENE_LINKS && e->has_links);
 }
 
-static int finds_device(const Evaluations *e, size_t i, SceneKind which)
-{
-    return case_has_device(which) && evaluated_has(e, &e->run[i], which) &&
-           (!e->level || i % e->n_levels == e->n_levels / 2);
-}
-
-static size_t first_tasks(Evaluations *e, size_t i, const double x[], SimTask task[N_SCENES])
-{
-    EvaluatedRun *run = &e->run[i];
-    size_t n = 0;
-    for (SceneKind c = 0; c < N_SCENES; c++)
-        if (!case_has_device(c))
-            task[n++] = (SimTask){.kind = c, .x = x, .scene = i, .result = &run->result[c]};
-    run->error_known = e->is_estimated && !e->level;
-    if (run->error_known && run->record->from_folder)
-        task[n++] = (SimTask){.x = x, .scene = i, .level = 1, .parts = &run->finer};
-    return n;
-}
-
+/* One building has the same links under every record. */
 static Status find_devices(Evaluations *e, const double x[], Err *err)
 {
     const size_t n_runs = e->n_records * e->n_levels;
-    DeviceSearch *search;
-    size_t n = 0;
-    TRY_ROOM(search, n_runs * N_SCENES, "devices", err);
-    for (size_t i = 0; i < n_runs; i++)
+    DeviceSearch *search = calloc(n_runs * N_SCENES, sizeof *search);
+    double *links = calloc(n_runs, sizeof *links);
+    size_t n = 0, n_links = 0;
+    for (size_t i = 0; search && links && i < n_runs; i++)
         for (SceneKind c = 0; c < N_SCENES; c++)
-            if (e->run[i].record->readable == STATUS_OK && finds_device(e, i, c))
+            if (e->run[i].record->readable == STATUS_OK && case_has_device(c) && evaluated_has(e, &e->run[i], c) &&
+                (!e->level || i % e->n_levels == e->n_levels / 2))
                 search[n++] = (DeviceSearch){.kind = c, .x = x, .scene = i};
-    const Status status = n > 0 ? devices_find(&e->tower, n, search, err) : STATUS_OK;
-    for (size_t k = 0; k < n; k++)
+    const Status status = !search || !links ? fail_memory(err, n_runs * N_SCENES, "devices")
+                          : n > 0           ? devices_find(&e->tower, n, search, err)
+                                            : STATUS_OK;
+    for (size_t k = 0; k < n; k++) {
         e->run[search[k].scene].device[search[k].kind] = search[k].device;
+        if (search[k].kind == SCENE_LINKS)
+            links[n_links++] = search[k].device.link_ns_m;
+    }
+    if (n_links > 0)
+        sort_values(n_links, links);
+    for (size_t i = 0; i < n_runs && n_links > 0 && e->has_links; i++)
+        e->run[i].device[SCENE_LINKS].link_ns_m = 0.5 * (links[(n_links - 1) / 2] + links[n_links / 2]);
     free(search);
+    free(links);
     return status;
 }
 
-/* One building has the same links under every record. */
-static Status settle_links(Evaluations *e, Err *err)
-{
-    const size_t n_runs = e->n_records * e->n_levels;
-    double *found;
-    size_t n = 0;
-    if (!e->has_links)
-        return STATUS_OK;
-    TRY_ROOM(found, e->n_records, "links", err);
-    for (size_t i = 0; i < n_runs; i++)
-        if (e->run[i].record->readable == STATUS_OK && finds_device(e, i, SCENE_LINKS))
-            found[n++] = e->run[i].device[SCENE_LINKS].link_ns_m;
-    sort_values(n, found);
-    for (size_t i = 0; i < n_runs; i++)
-        e->run[i].device[SCENE_LINKS].link_ns_m = 0.5 * (found[(n - 1) / 2] + found[n / 2]);
-    free(found);
-    return STATUS_OK;
-}
+/* Cases without a device, and the design with twice the steps of records of a folder; those with one; replicates. */
+typedef enum { FIRST, WITH_DEVICES, REPLICATES } Round;
 
-static size_t device_tasks(Evaluations *e, size_t i, const double x[], SimTask task[N_SCENES])
-{
-    EvaluatedRun *run = &e->run[i];
-    size_t n = 0;
-    for (SceneKind c = 0; c < N_SCENES; c++)
-        if (case_has_device(c) && evaluated_has(e, run, c))
-            task[n++] = (SimTask){.kind = c, .x = x, .scene = i, .device = run->device[c], .result = &run->result[c]};
-    return n;
-}
-
-static size_t replicate_tasks(Evaluations *e, size_t i, const double x[], SimTask task[N_SCENES])
-{
-    task[0] = (SimTask){.x = x, .scene = i, .n_parts = e->tower.n_parts, .summary = &e->run[i].replicates};
-    return e->replicates > 0;
-}
-
-typedef size_t MakeTasks(Evaluations *e, size_t i, const double x[], SimTask task[N_SCENES]);
-
-static Status run_round(Evaluations *e, MakeTasks *make, const double x[], EvaluationsTold *told, Err *err)
+static Status run_round(Evaluations *e, Round round, const double x[], EvaluationsTold *told, Err *err)
 {
     const size_t n = e->n_records * e->n_levels;
-    SimTask *tasks = calloc(n * N_SCENES, sizeof *tasks);
+    SimTask *tasks;
     size_t n_tasks = 0;
-    if (!tasks)
-        return fail_memory(err, n * N_SCENES, "simulations");
-    for (size_t i = 0; i < n; i++)
-        if (e->record[i / e->n_levels].readable == STATUS_OK)
-            n_tasks += make(e, i, x, tasks + n_tasks);
+    TRY_ROOM(tasks, n * N_SCENES, "simulations", err);
+    for (size_t i = 0; i < n; i++) {
+        EvaluatedRun *run = &e->run[i];
+        if (run->record->readable != STATUS_OK)
+            continue;
+        run->error_known = e->is_estimated && !e->level;
+        for (SceneKind c = 0; c < N_SCENES && round != REPLICATES; c++)
+            if (case_has_device(c) == (round == WITH_DEVICES) && evaluated_has(e, run, c))
+                tasks[n_tasks++] =
+                    (SimTask){.kind = c, .x = x, .scene = i, .device = run->device[c], .result = &run->result[c]};
+        if (round == FIRST && run->error_known && run->record->from_folder)
+            tasks[n_tasks++] = (SimTask){.x = x, .scene = i, .level = 1, .parts = &run->finer};
+        if (round == REPLICATES && e->replicates > 0)
+            tasks[n_tasks++] = (SimTask){.x = x, .scene = i, .n_parts = e->tower.n_parts, .summary = &run->replicates};
+    }
     if (told)
         told->n_all = n_tasks;
     const Status status =
@@ -218,11 +175,10 @@ Status evaluations_run(Evaluations *e, size_t n_var, const double x[], Evaluatio
 {
     if (e->tower.n_var != n_var)
         return bad_data(err, "the front has designs of %zu variables, this building has %zu", n_var, e->tower.n_var);
-    TRY(run_round(e, first_tasks, x, told, err));
+    TRY(run_round(e, FIRST, x, told, err));
     TRY(find_devices(e, x, err));
-    TRY(settle_links(e, err));
-    TRY(run_round(e, device_tasks, x, NULL, err));
-    TRY(run_round(e, replicate_tasks, x, told, err));
+    TRY(run_round(e, WITH_DEVICES, x, NULL, err));
+    TRY(run_round(e, REPLICATES, x, told, err));
     for (size_t i = 0; i < e->n_records * e->n_levels; i++)
         if (e->run[i].error_known)
             TRY(estimate(e, i, x, err));

@@ -8,23 +8,6 @@ static double normal_cdf(double z)
     return 0.5 * erfc(-z * M_SQRT1_2);
 }
 
-/* At most one intensity has both, none exceed below it, all above: the likelihood grows as beta falls to 0, and says
- * no more than that the median lies between the last that none exceed and the first that all do. */
-static int are_parted(size_t n, const double x[], const size_t n_at[], const size_t exceeded[], double between[2])
-{
-    double some_stay = 0, some_exceed = INFINITY;
-    between[0] = 0;
-    between[1] = INFINITY;
-    for (size_t j = 0; j < n; j++) {
-        const size_t stay = n_at[j] - exceeded[j];
-        some_stay = stay > 0 ? fmax(some_stay, x[j]) : some_stay;
-        some_exceed = exceeded[j] > 0 ? fmin(some_exceed, x[j]) : some_exceed;
-        between[0] = stay > 0 && exceeded[j] == 0 ? fmax(between[0], x[j]) : between[0];
-        between[1] = stay == 0 && exceeded[j] > 0 ? fmin(between[1], x[j]) : between[1];
-    }
-    return some_stay <= some_exceed;
-}
-
 typedef struct {
     double gradient[2], information[3]; /* of a, b; aa, ab, bb */
 } Score;
@@ -49,14 +32,25 @@ static Score score_of(size_t n, const double x[], const size_t n_at[], const siz
 Fragility fragility_fit(size_t n, const double x[], const size_t n_at[], const size_t exceeded[])
 {
     Fragility f = {NAN, NAN, NAN, NAN, {NAN, NAN}};
-    double mean = 0, a, b = 2, between[2];
-    for (size_t j = 0; j < n; j++)
+    double mean = 0, b = 2, some_stay = 0, some_exceed = INFINITY, between[2] = {0, INFINITY};
+    for (size_t j = 0; j < n; j++) {
+        const size_t stay = n_at[j] - exceeded[j];
         mean += log(x[j]) / (double)n;
-    if (are_parted(n, x, n_at, exceeded, between)) {
+        some_stay = stay > 0 ? fmax(some_stay, x[j]) : some_stay;
+        some_exceed = exceeded[j] > 0 ? fmin(some_exceed, x[j]) : some_exceed;
+        between[0] = stay > 0 && exceeded[j] == 0 ? fmax(between[0], x[j]) : between[0];
+        between[1] = stay == 0 && exceeded[j] > 0 ? fmin(between[1], x[j]) : between[1];
+    }
+
+    /* 1. At most one intensity has both, none exceed below it, all above: the likelihood grows as beta falls to 0, and
+     * says no more than that the median lies between the last that none exceed and the first that all do. */
+    if (some_stay <= some_exceed) {
         memcpy(f.between, between, sizeof between);
         return f;
     }
-    a = -b * mean;
+
+    /* 2. Fisher scoring. */
+    double a = -b * mean;
     Score s = {{0}, {0}};
     for (int i = 0; i < 200; i++) {
         s = score_of(n, x, n_at, exceeded, a, b);
@@ -113,13 +107,6 @@ static double loss_at(size_t n, const double x[], const double loss[], double at
     return begin + (loss[j] - begin) * (at - from) / (x[j] - from);
 }
 
-/* L from `begin` at a to `end` at b, straight, under lambda = rate (x / a)^k: by parts. */
-static double lost_between(double a, double b, double begin, double end, double rate, double k)
-{
-    const double e = k + 1, l = log(b / a), area = a * rate * (e != 0 ? expm1(e * l) / e : l);
-    return begin * rate - end * rate * exp(k * l) + (end - begin) / (b - a) * area;
-}
-
 AnnualLoss annual_loss(size_t n, const double x[], const double loss[], size_t n_hazard, const double hazard[])
 {
     const double *last = hazard + 2 * n_hazard - 2;
@@ -131,8 +118,11 @@ AnnualLoss annual_loss(size_t n, const double x[], const double loss[], size_t n
             b = row[2];
             for (size_t j = n; j-- > 0;)
                 b = x[j] > a && x[j] < b ? x[j] : b;
-            const double lost =
-                lost_between(a, b, loss_at(n, x, loss, a), loss_at(n, x, loss, b), row[1] * pow(a / row[0], k), k);
+            /* L straight from `begin` at a to `end` at b, under lambda = rate (x / a)^k: by parts. */
+            const double begin = loss_at(n, x, loss, a), end = loss_at(n, x, loss, b),
+                         rate = row[1] * pow(a / row[0], k);
+            const double e = k + 1, l = log(b / a), area = a * rate * (e != 0 ? expm1(e * l) / e : l);
+            const double lost = begin * rate - end * rate * exp(k * l) + (end - begin) / (b - a) * area;
             y.per_year += lost;
             y.below += b <= x[0] ? lost : 0;
             y.above += a >= x[n - 1] ? lost : 0;

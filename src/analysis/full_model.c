@@ -5,23 +5,6 @@
 /* Above the degrees of freedom of any frame. */
 enum { ALL_MODES = 100000 };
 
-static Status describe(const Settings *settings, FullModel *m, Err *err)
-{
-    Settings s = *settings;
-    for (int model = 0; model < MODELS; model++) {
-        Building b;
-        double z = 0;
-        TRY(building_load(&b, &s.building, err));
-        m->dofs[model] = b.model.n;
-        m->n_floors = b.n;
-        for (int j = 0; j < b.n; j++)
-            m->z[j] = z += b.storey_m[j];
-        building_free(&b);
-        s.building.modes = ALL_MODES;
-    }
-    return STATUS_OK;
-}
-
 /* Both models as scenes of one tower, then the designs by each. */
 static Status find(const Settings *s, SceneKind kind, size_t n, const double X[], SimTask *tasks, FullModel *m,
                    Err *err)
@@ -30,7 +13,18 @@ static Status find(const Settings *s, SceneKind kind, size_t n, const double X[]
     const char *const record = s->motion.record;
     Problem p;
     snprintf(scene[FULL].setting, sizeof scene->setting, "building.modes=%d", ALL_MODES);
-    TRY(describe(s, m, err));
+    for (int model = 0; model < MODELS; model++) {
+        BuildingOptions options = s->building;
+        Building b;
+        double z = 0;
+        options.modes = model == FULL ? ALL_MODES : options.modes;
+        TRY(building_load(&b, &options, err));
+        m->dofs[model] = b.model.n;
+        m->n_floors = b.n;
+        for (int j = 0; j < b.n; j++)
+            m->z[j] = z += b.storey_m[j];
+        building_free(&b);
+    }
     TRY(tower_open_scenes(&p, s, 1, &record, MODELS, scene, err));
     for (size_t i = 0; i < MODELS * n; i++)
         tasks[i] = (SimTask){

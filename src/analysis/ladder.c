@@ -87,15 +87,6 @@ static int is_there(const Settings *all, int kind, double strong_s)
     }
 }
 
-static Status find_hardening(const Settings *s, double *hardening, Err *err)
-{
-    Building b;
-    TRY(building_load(&b, &s->building, err));
-    *hardening = b.yields ? b.hardening : 0;
-    building_free(&b);
-    return STATUS_OK;
-}
-
 Status ladder_effects(const Settings *s, double strong_s, LadderForm form, Ladder *l, Settings *all, Err *err)
 {
     *l = (Ladder){0};
@@ -117,7 +108,11 @@ Status ladder_effects(const Settings *s, double strong_s, LadderForm form, Ladde
     }
     for (int k = 0; k < LADDER_MEASURES; k++)
         l->tolerance[k] = LADDER_TOLERANCE;
-    return find_hardening(all, &l->hardening, err);
+    Building b;
+    TRY(building_load(&b, &all->building, err));
+    l->hardening = b.yields ? b.hardening : 0;
+    building_free(&b);
+    return STATUS_OK;
 }
 
 /* -- what each changes --------------------------------------------------------------------------------------------- */

@@ -25,19 +25,6 @@ typedef struct {
     SceneChange scene[1 + SIDES_OF_TWO_STEPS * N_KEYS]; /* as set, then the sides of every setting */
 } Job;
 
-static double setting_of(const Settings *s, size_t key)
-{
-    const double damping = s->building.damping.n == 1 ? s->building.damping.at[0] : 0; /* of a list of them: none */
-    const double values[N_KEYS] = {s->contact.radius_m,
-                                   s->contact.restitution,
-                                   damping,
-                                   s->core.damping,
-                                   s->contact.bumper_stiffness_n_m,
-                                   strcmp(s->core.foundation, "fixed") == 0 ? 0 : s->core.foundation_factor,
-                                   s->building.yield_drift};
-    return values[key];
-}
-
 /* Mean, and standard error (NAN: one replicate), of the differences over 2h of measure k between two sides. */
 static void difference(const Job *job, size_t parameter, int minus, double h, int k, double *mean, double *error)
 {
@@ -88,9 +75,17 @@ static void list_variables(Job *job)
 /* A scene of its own for every side: whatever follows from the setting follows. */
 static void list_settings(Job *job, const Settings *s)
 {
+    const double damping = s->building.damping.n == 1 ? s->building.damping.at[0] : 0; /* of a list of them: none */
+    const double values[N_KEYS] = {s->contact.radius_m,
+                                   s->contact.restitution,
+                                   damping,
+                                   s->core.damping,
+                                   s->contact.bumper_stiffness_n_m,
+                                   strcmp(s->core.foundation, "fixed") == 0 ? 0 : s->core.foundation_factor,
+                                   s->building.yield_drift};
     job->n_scenes = 1;
     for (size_t i = 0; i < N_KEYS; i++) {
-        const double value = setting_of(s, i);
+        const double value = values[i];
         if (!(value > 0) || (i == 1 && value * (1 + SHARE) > 1))
             continue;
         Sensitivity *o = &job->out[job->n_parameters++];

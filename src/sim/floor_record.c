@@ -3,26 +3,23 @@
 #include "scene/building.h"
 
 struct FloorRecord {
-    size_t width, rows, room; /* floors padded; samples so far, room for them */
+    size_t width, rows, room; /* floors padded, and one; samples so far, room for them */
     double h;
-    double *u;      /* (room, width) [m], then accelerations [m/s2] */
-    double *ground; /* (room) [m/s2] */
+    double *u; /* (room, width) [m], then accelerations [m/s2]; the last of a row: of the ground */
     int out_of_memory;
 };
 
 Status floor_record_create(FloorRecord **out, int n_floors, Err *err)
 {
     TRY_ROOM(*out, 1, "the accelerations of the floors", err);
-    (*out)->width = ((size_t)n_floors + 7) & ~(size_t)7;
+    (*out)->width = (((size_t)n_floors + 7) & ~(size_t)7) + 1;
     return STATUS_OK;
 }
 
 void floor_record_free(FloorRecord *f)
 {
-    if (f) {
+    if (f)
         free(f->u);
-        free(f->ground);
-    }
     free(f);
 }
 
@@ -42,17 +39,16 @@ double *floor_record_add(FloorRecord *f, double ground)
 {
     if (f->rows == f->room) {
         const size_t room = f->room > 0 ? 2 * f->room : 1;
-        double *u = realloc(f->u, room * f->width * sizeof *u);
-        f->u = u ? u : f->u;
-        double *wider = u ? realloc(f->ground, room * sizeof *wider) : NULL;
-        f->ground = wider ? wider : f->ground;
-        f->room = wider ? room : f->room;
+        double *wider = realloc(f->u, room * f->width * sizeof *wider);
         f->out_of_memory |= !wider;
         if (!wider)
             return NULL;
+        f->u = wider;
+        f->room = room;
     }
-    f->ground[f->rows] = ground;
-    return f->u + f->rows++ * f->width;
+    double *row = f->u + f->rows++ * f->width;
+    row[f->width - 1] = ground;
+    return row;
 }
 
 Status floor_record_accelerations(FloorRecord *f, const double **rows, size_t *n, size_t *width, Err *err)
@@ -65,9 +61,9 @@ Status floor_record_accelerations(FloorRecord *f, const double **rows, size_t *n
     *n = f->rows;
     *width = f->width;
     for (size_t i = 0; i < f->rows; i++)
-        for (size_t j = 0; j < f->width; j++) {
+        for (size_t j = 0; j + 1 < f->width; j++) {
             double *u = f->u + i * f->width + j;
-            const double now = *u, ground = f->ground[i];
+            const double now = *u, ground = f->u[(i + 1) * f->width - 1];
             *u = i > 0 && i + 1 < f->rows ? per_h2 * (before[j] - 2 * now + u[f->width]) + ground : ground;
             before[j] = now;
         }

@@ -33,44 +33,79 @@ void sample_row(const SimWorker *worker, const SimSample *s, size_t n_floors, do
     sample_energies(s, row + (SAMPLE_PARTS - 1) * n_floors);
 }
 
-/* A run that is repeated begins anew at t = 0. */
-static void note(const SimSample *s, void *user)
+/* The next row; NULL: no memory. A run that is repeated begins anew at t = 0. */
+static double *next_row(Track *t, double time)
 {
-    Track *t = user;
-    if (s->t == 0)
+    if (time == 0)
         t->n = 0;
     if (t->n == t->room) {
         const size_t room = 2 * t->room + 1024;
         double *wider = realloc(t->rows, room * t->width * sizeof *wider);
         t->lacks_memory |= !wider;
         if (!wider)
-            return;
+            return NULL;
         t->rows = wider;
         t->room = room;
     }
-    sample_row(t->worker, s, t->n_floors, t->rows + t->n++ * t->width);
+    return t->rows + t->n++ * t->width;
+}
+
+static void note(const SimSample *s, void *user)
+{
+    Track *t = user;
+    double *row = next_row(t, s->t);
+    if (row)
+        sample_row(t->worker, s, t->n_floors, row);
+}
+
+static void note_modes(const SimSample *s, void *user)
+{
+    Track *t = user;
+    t->width = 1 + 2 * (size_t)s->n_modes;
+    double *row = next_row(t, s->t);
+    if (!row)
+        return;
+    *row++ = s->t;
+    for (int i = 0; i < s->n_modes; i++) {
+        *row++ = s->omega[i] * s->q[i];
+        *row++ = s->v[i];
+    }
+}
+
+/* Runs the worker of the track, which ends with it. */
+static Status follow(Track *t, SceneKind kind, const double x[], SimResult *result, Err *err)
+{
+    SimWorker *worker = t->worker;
+    Status status = sim_run(worker, kind, x, result, err);
+    sim_worker_free(worker);
+    t->outcome = result->outcome;
+    if (status == STATUS_OK && t->lacks_memory)
+        status = fail_memory(err, t->n, "rows of a response");
+    if (status != STATUS_OK)
+        track_free(t);
+    return status;
 }
 
 Status track_run(const Scene *scene, SceneKind kind, const double x[], const LinearDevice *device, double every_s,
                  Track *out, Err *err)
 {
-    SimWorker *worker;
     SimResult result;
     const size_t n_floors = (size_t)scene_n_floors(scene);
     *out = (Track){.n_floors = n_floors, .width = SAMPLE_FIXED + SAMPLE_PARTS * n_floors};
-    TRY(sim_worker_create(&worker, scene, err));
-    out->worker = worker;
-    sim_worker_sample(worker, every_s, note, out);
-    sim_worker_device(worker, device);
-    Status status = sim_run(worker, kind, x, &result, err);
-    sim_worker_free(worker);
-    if (status == STATUS_OK && out->lacks_memory)
-        status = fail_memory(err, out->n, "rows of a response");
-    if (status == STATUS_OK)
-        out->outcome = result.outcome;
-    else
-        track_free(out);
-    return status;
+    TRY(sim_worker_create(&out->worker, scene, err));
+    sim_worker_sample(out->worker, every_s, note, out);
+    sim_worker_device(out->worker, device);
+    return follow(out, kind, x, &result, err);
+}
+
+Status track_modes(const Scene *scene, const double x[], Track *out, Err *err)
+{
+    SimResult result;
+    *out = (Track){0};
+    TRY(sim_worker_create(&out->worker, scene, err));
+    sim_worker_sample(out->worker, 0, note_modes, out);
+    TRY(follow(out, SCENE_IMPACT, x, &result, err));
+    return result.outcome == RUN_OK ? STATUS_OK : bad_data(err, "the design cannot be simulated: %s", result.reason);
 }
 
 void track_free(Track *t)

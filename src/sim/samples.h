@@ -34,9 +34,9 @@ void sample_row(const SimWorker *worker, const SimSample *s, size_t n_floors, do
 /* Rows of a run, from t = 0 on; of one that was repeated with shorter steps the last. */
 typedef struct {
     size_t n, n_floors, width;
-    double *rows; /* (n, width) as sample_row has them */
+    double *rows; /* (n, width) as sample_row has them, or track_modes */
     RunOutcome outcome;
-    const SimWorker *worker; /* while it runs: */
+    SimWorker *worker; /* while it runs: */
     size_t room;
     int lacks_memory;
 } Track;
@@ -44,6 +44,10 @@ typedef struct {
 /* every_s as EngineOptions.sample_spacing; x as for sim_run. */
 Status track_run(const Scene *scene, SceneKind kind, const double x[], const LinearDevice *device, double every_s,
                  Track *out, Err *err);
+
+/* The same of the design x: beside t, w q and q' of every mode, whose squares are twice its energy. A run that does not
+ * finish fails. */
+Status track_modes(const Scene *scene, const double x[], Track *out, Err *err);
 void track_free(Track *t);
 
 /* Column k of the rows, 0: t; those behind the floors are the energies. */
