@@ -6,46 +6,16 @@
 #include "report/verdict.h"
 #include "settings/options.h"
 
-/* Under the first record; the baselines under all of them too. */
-static Status simulate(const Problem *p, const double x[], int with_devices, Detail *d, Err *err)
+static Status take_here(const Problem *p, const double x[], const DetailOptions *options, Detail *d, Err *err)
 {
-    const SimTask task = {.kind = SCENE_IMPACT, .x = x};
-    double sd[N_MEASURES];
-    TRY(tower_simulate(p, 1, &task, &d->result[SCENE_IMPACT], err));
-    for (int k = 0; k < N_MEASURES; k++)
-        d->error[k] = sd[k] = NAN;
-    if (tower_record(tower_of(p), 0)->options.sim.engine == ENGINE_FAST)
-        TRY(estimate_designs(p, 1, &task, &d->result[SCENE_IMPACT], d->error, sd, err));
-    for (int k = 0; k < N_MEASURES; k++)
-        d->error[k] = fmax(ESTIMATE_FACTOR * d->error[k], sd[k]); /* what is known of both */
-    TRY(baselines_find(p, x, with_devices, d->baseline, err));
-    for (int k = SCENE_IMPACT + 1; k < N_SCENES; k++)
-        d->result[k] = d->baseline[k].first;
-    return STATUS_OK;
-}
-
-/* As designed: replicates are not among them. */
-static Status simulate_records(const Problem *p, const double x[], Detail *d, Err *err)
-{
-    SimTask tasks[TOWER_RECORDS_MAX];
-    d->n_records = tower_n_records(tower_of(p));
-    for (int k = 0; k < N_MEASURES; k++)
-        d->standard_error[k] = NAN;
-    if (d->n_records < 2)
-        return STATUS_OK;
-    for (size_t i = 0; i < d->n_records; i++)
-        tasks[i] = (SimTask){.kind = SCENE_IMPACT, .x = x, .scene = i};
-    TRY_ROOM(d->by_record, d->n_records, "results", err);
-    TRY(tower_simulate(p, d->n_records, tasks, d->by_record, err));
-    tower_standard_errors(tower_of(p), d->by_record, d->standard_error);
-    return STATUS_OK;
-}
-
-static void describe(const Scenario *w, const double x[], Detail *d)
-{
+    const Scenario *w = tower_record(tower_of(p), 0);
     const int n = d->n_floors;
     const double given = w->options.sim.duration_s, as_set = w->options.contact.bumper_stiffness_n_m;
     Design design;
+    SceneModes modes;
+    SimTask tasks[TOWER_RECORDS_MAX];
+
+    /* 1. The design and its ground motion. */
     design_of(scene_design(w->scene), x, &design);
     design_protection(scene_design(w->scene), &design, d->protection);
     d->gap_sides = scene_design(w->scene)->gap_sides;
@@ -63,18 +33,35 @@ static void describe(const Scenario *w, const double x[], Detail *d)
     d->scale = w->motion.scale;
     d->stretch = w->motion.stretch;
     d->duration_s = given > 0 ? given : motion_duration(&w->motion);
-}
-
-static Status take_here(const Problem *p, const double x[], const DetailOptions *options, Detail *d, Err *err)
-{
-    const Scenario *w = tower_record(tower_of(p), 0);
-    SceneModes modes;
-    describe(w, x, d);
     TRY(scene_frequencies(w->scene, x, &modes, err));
     memcpy(d->building_hz, modes.building_hz, sizeof d->building_hz);
     memcpy(d->core_hz, modes.core_hz, sizeof d->core_hz);
-    TRY(simulate_records(p, x, d, err));
-    TRY(simulate(p, x, !options->without_devices, d, err));
+
+    /* 2. Under every record as designed: replicates are not among them. */
+    d->n_records = tower_n_records(tower_of(p));
+    for (int k = 0; k < N_MEASURES; k++)
+        d->standard_error[k] = NAN;
+    if (d->n_records > 1) {
+        for (size_t i = 0; i < d->n_records; i++)
+            tasks[i] = (SimTask){.kind = SCENE_IMPACT, .x = x, .scene = i};
+        TRY_ROOM(d->by_record, d->n_records, "results", err);
+        TRY(tower_simulate(p, d->n_records, tasks, d->by_record, err));
+        tower_standard_errors(tower_of(p), d->by_record, d->standard_error);
+    }
+
+    /* 3. Under the first record; the baselines under all of them too. */
+    const SimTask task = {.kind = SCENE_IMPACT, .x = x};
+    double sd[N_MEASURES];
+    TRY(tower_simulate(p, 1, &task, &d->result[SCENE_IMPACT], err));
+    for (int k = 0; k < N_MEASURES; k++)
+        d->error[k] = sd[k] = NAN;
+    if (w->options.sim.engine == ENGINE_FAST)
+        TRY(estimate_designs(p, 1, &task, &d->result[SCENE_IMPACT], d->error, sd, err));
+    for (int k = 0; k < N_MEASURES; k++)
+        d->error[k] = fmax(ESTIMATE_FACTOR * d->error[k], sd[k]); /* what is known of both */
+    TRY(baselines_find(p, x, !options->without_devices, d->baseline, err));
+    for (int k = SCENE_IMPACT + 1; k < N_SCENES; k++)
+        d->result[k] = d->baseline[k].first;
     return histories_run(w, x, d->floor, d->history, err);
 }
 

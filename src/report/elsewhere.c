@@ -22,22 +22,17 @@ static uint64_t content_of(const char *source)
 }
 
 /* The same record under another name counts once too, which the notes say. */
-static int is_there(const OtherRecords *r, const char *source, uint64_t content)
+static Status add(const char *source, void *user, Err *err)
 {
+    OtherRecords *r = user;
+    const uint64_t content = content_of(source);
     size_t i = 0;
     while (i <= r->n && r->content[i] != content)
         i++;
     const char *other = i == 0 ? r->own : i <= r->n ? r->source[i - 1] : source;
     if (r->notes && strcmp(source, other) != 0)
         fprintf(r->notes, "note: %s has the content of %s, which is shown already\n", source, other);
-    return i <= r->n;
-}
-
-static Status add(const char *source, void *user, Err *err)
-{
-    OtherRecords *r = user;
-    const uint64_t content = content_of(source);
-    if (is_there(r, source, content))
+    if (i <= r->n)
         return STATUS_OK;
     if (r->n == ELSEWHERE_MAX)
         return misused(err, "more than %d earthquakes make no report", ELSEWHERE_MAX);

@@ -44,15 +44,7 @@ static int is_known(const Run *run, size_t row)
     return known;
 }
 
-static size_t count_known(const Run *run)
-{
-    size_t n = 0;
-    for (size_t i = 0; i < run->table.n; i++)
-        n += is_known(run, i);
-    return n;
-}
-
-/* s->n of `known` designs, evenly spread, and the box of all of them. */
+/* s->n of `known` designs, evenly spread, in the box of all of them. */
 static void take_designs(Sobol *s, size_t known)
 {
     const Run *run = s->run;
@@ -72,30 +64,40 @@ static void take_designs(Sobol *s, size_t known)
     }
     for (size_t j = 0; j < s->n_var; j++)
         s->span[j] = s->span[j] > s->low[j] ? s->span[j] - s->low[j] : 1;
-}
-
-static void scale_designs(Sobol *s)
-{
     for (size_t i = 0; i < s->n; i++) {
         for (size_t j = 0; j < s->n_var; j++)
-            s->U[i * s->n_var + j] = (run_x(s->run, s->row[i])[j] - s->low[j]) / s->span[j];
-        memcpy(s->F + i * s->n_obj, run_f(s->run, s->row[i]), s->n_obj * sizeof(double));
+            s->U[i * s->n_var + j] = (run_x(run, s->row[i])[j] - s->low[j]) / s->span[j];
+        memcpy(s->F + i * s->n_obj, run_f(run, s->row[i]), s->n_obj * sizeof(double));
     }
 }
 
 static double variance(const Sobol *s, size_t k)
 {
+    const double n = (double)s->n_samples;
     double mean = 0, square = 0;
-    for (size_t i = 0; i < s->n_samples; i++)
-        mean += s->fa[i * s->n_obj + k] / (double)s->n_samples;
-    for (size_t i = 0; i < s->n_samples; i++)
-        square += pow(s->fa[i * s->n_obj + k] - mean, 2) / (double)s->n_samples;
+    for (size_t i = k; i < s->n_samples * s->n_obj; i += s->n_obj)
+        mean += s->fa[i] / n;
+    for (size_t i = k; i < s->n_samples * s->n_obj; i += s->n_obj)
+        square += pow(s->fa[i] - mean, 2) / n;
     return square;
 }
 
-static void find_indices(Sobol *s, const Rbf *m, double *total)
+static Status find(Sobol *s, size_t known, Importance *out, Err *err)
 {
     const size_t n = s->n_samples;
+    Rbf *m;
+    TRY(rbf_create(&m, s->n, s->n_var, s->n_obj, err));
+    take_designs(s, known);
+    const Status status = rbf_tune(m, s->n, s->U, s->F, NULL, err);
+    if (status != STATUS_OK) {
+        free(m);
+        return status;
+    }
+    out->n_centres = s->n;
+    for (size_t k = 0; k < s->n_obj; k++)
+        out->explained[k] = rbf_explained(m, k);
+
+    /* The indices, by samples of the interpolant. */
     Random r = random_stream(1, RANDOM_IMPORTANCE, 0, 0);
     for (size_t i = 0; i < n * s->n_var; i++) {
         s->A[i] = random_uniform(&r);
@@ -111,31 +113,19 @@ static void find_indices(Sobol *s, const Rbf *m, double *total)
             double sum = 0;
             for (size_t i = k; i < n * s->n_obj; i += s->n_obj)
                 sum += pow(s->fa[i] - s->fx[i], 2);
-            total[k * s->n_var + j] = sum / (2 * (double)n * variance(s, k));
+            out->total[k * s->n_var + j] = sum / (2 * (double)n * variance(s, k));
         }
     }
-}
-
-static Status find(Sobol *s, size_t known, Importance *out, Err *err)
-{
-    Rbf *m;
-    TRY(rbf_create(&m, s->n, s->n_var, s->n_obj, err));
-    take_designs(s, known);
-    scale_designs(s);
-    const Status status = rbf_tune(m, s->n, s->U, s->F, NULL, err);
-    if (status == STATUS_OK) {
-        find_indices(s, m, out->total);
-        for (size_t k = 0; k < s->n_obj; k++)
-            out->explained[k] = rbf_explained(m, k);
-        out->n_centres = s->n;
-    }
     free(m);
-    return status;
+    return STATUS_OK;
 }
 
 Status importance_of(const Run *run, Importance *out, Err *err)
 {
-    const size_t known = count_known(run), n_var = run->schema.n_var, n_obj = run->schema.n_obj;
+    const size_t n_var = run->schema.n_var, n_obj = run->schema.n_obj;
+    size_t known = 0;
+    for (size_t i = 0; i < run->table.n; i++)
+        known += is_known(run, i);
     const size_t samples = PREDICTIONS / (n_var + 1);
     Sobol s = {.run = run,
                .n = MIN_OF(known, CENTRES),

@@ -15,11 +15,17 @@ static double value_of(const Run *run, size_t row, size_t column)
     return column < n_obj ? run_f(run, row)[column] : run_x(run, row)[column - n_obj];
 }
 
-/* Into rows (n_front), which hold NOT_TAKEN for the other designs of the front: the lowest and the highest value of
- * every column, polished designs, and those that are to be kept. */
-static void take_wanted(const Run *run, const size_t kept[2], size_t rows[])
+size_t thin_front(const Run *run, size_t most, const size_t kept[2], size_t rows[])
 {
     const size_t n = run->n_front, *front = run->front;
+    size_t wanted = 0, taken = 0;
+    if (n <= most) {
+        memcpy(rows, front, n * sizeof *rows);
+        return n;
+    }
+
+    /* 1. Polished designs and those that are to be kept, then the lowest and the highest value of every column; the
+     * others of the front are NOT_TAKEN so far. */
     for (size_t i = 0; i < n; i++) {
         const int is_polished = kind_is_outside(run->table.row[front[i]].kind);
         rows[i] = is_polished || front[i] == kept[0] || front[i] == kept[1] ? front[i] : NOT_TAKEN;
@@ -34,22 +40,13 @@ static void take_wanted(const Run *run, const size_t kept[2], size_t rows[])
         rows[low] = front[low];
         rows[high] = front[high];
     }
-}
 
-size_t thin_front(const Run *run, size_t most, const size_t kept[2], size_t rows[])
-{
-    const size_t n = run->n_front;
-    size_t wanted = 0, taken = 0;
-    if (n <= most) {
-        memcpy(rows, run->front, n * sizeof *rows);
-        return n;
-    }
-    take_wanted(run, kept, rows);
+    /* 2. The rest evenly. */
     for (size_t i = 0; i < n; i++)
         wanted += rows[i] != NOT_TAKEN;
     for (size_t k = wanted; k < most; k++) {
         const size_t i = (k - wanted) * n / (most - wanted);
-        rows[i] = run->front[i];
+        rows[i] = front[i];
     }
     for (size_t i = 0; i < n; i++)
         if (rows[i] != NOT_TAKEN)
@@ -62,30 +59,27 @@ extern const char _binary_build_web_page_html_start[], _binary_build_web_page_ht
 extern const char _binary_build_web_live_html_start[], _binary_build_web_live_html_end[];
 
 /* JSON in which no text can end the script element or begin a comment: < stands only inside strings. */
-static void write_json(json_t *all, int digits, FILE *out)
+static void write_part(const char *id, json_t *part, int digits, FILE *out)
 {
-    char *text = json_dumps(all, JSON_COMPACT | JSON_ENSURE_ASCII | JSON_REAL_PRECISION(digits));
-    json_decref(all);
+    char *text = json_dumps(part, JSON_COMPACT | JSON_ENSURE_ASCII | JSON_REAL_PRECISION(digits));
+    json_decref(part);
+    fprintf(out, "<script type=\"application/json\" id=\"%s\">", id);
     for (const char *p = text; *p; p++)
         if (*p == '<')
             fputs("\\u003c", out);
         else
             fputc(*p, out);
     free(text);
-}
-
-static void write_part(const char *id, json_t *part, int digits, FILE *out)
-{
-    fprintf(out, "<script type=\"application/json\" id=\"%s\">", id);
-    write_json(part, digits, out);
     fputs("</script>\n", out);
 }
 
-/* A page of its template. body NULL: the parts of a report. has_engine: it simulates, with `scene`, or NULL: with what
+/* A page of its template. body NULL: the parts of a report, which simulates with its scene, or if it is live with what
  * the server sends. */
-static Status write_page(json_t *run, const Report *rows, const char *body, int has_engine, json_t *scene,
-                         const char *start, const char *end, FILE *out, Err *err)
+static Status write_page(json_t *run, const Report *rows, const char *body, int is_live, FILE *out, Err *err)
 {
+    const char *const start = is_live ? _binary_build_web_live_html_start : _binary_build_web_page_html_start;
+    const char *const end = is_live ? _binary_build_web_live_html_end : _binary_build_web_page_html_end;
+    json_t *scene = body ? NULL : rows->scene;
     static const char *const MARKS[] = {"<!-- the parts -->\n", "<!-- the run -->\n", "<!-- the engine -->\n",
                                         "<!-- the scene -->\n"};
     enum { PARTS, RUN, ENGINE, SCENE, N_MARKS };
@@ -94,7 +88,6 @@ static Status write_page(json_t *run, const Report *rows, const char *body, int 
         at[i] = memmem(start, end - start, MARKS[i], strlen(MARKS[i]));
         if (!at[i]) {
             json_decref(run);
-            json_decref(scene);
             return fail(err, STATUS_INTERNAL, "the page of the report has no '%.20s'", MARKS[i]);
         }
         behind[i] = at[i] + strlen(MARKS[i]);
@@ -111,28 +104,24 @@ static Status write_page(json_t *run, const Report *rows, const char *body, int 
         rows ? export_designs(out, rows->run, EXPORT_PAGE, rows->n_shown, rows->shown, err) : STATUS_OK;
     fputs("</script>\n", out);
     fwrite(behind[RUN], 1, at[ENGINE] - behind[RUN], out);
-    if (has_engine)
+    if (is_live || scene)
         fwrite(behind[ENGINE], 1, at[SCENE] - behind[ENGINE], out);
     if (scene)
-        write_part("scene", scene, 6, out);
+        write_part("scene", json_incref(scene), 6, out);
     fwrite(behind[SCENE], 1, end - behind[SCENE], out);
     return status;
 }
 
 Status page_write(FILE *out, json_t *run, const Report *rows, const char *body, Err *err)
 {
-    return write_page(run, rows, body, 0, NULL, _binary_build_web_page_html_start, _binary_build_web_page_html_end, out,
-                      err);
+    return write_page(run, rows, body, 0, out, err);
 }
 
 static Status write_whole(const Report *r, const char *path, Err *err)
 {
     Output o;
     TRY(output_open(&o, path, err));
-    return output_end(&o,
-                      write_page(report_json(r), r, NULL, r->scene != NULL, json_incref(r->scene),
-                                 _binary_build_web_page_html_start, _binary_build_web_page_html_end, o.stream, err),
-                      err);
+    return output_end(&o, write_page(report_json(r), r, NULL, 0, o.stream, err), err);
 }
 
 /* The report with the designs that a page shows, which become a page or pictures at path. */
@@ -172,8 +161,7 @@ Status report_live(const Run *run, char **text, Err *err)
     r.knee = r.chosen = run_knee(run);
     r.n_shown = run->n_front;
     r.shown = run->front;
-    Status status = write_page(report_json(&r), &r, NULL, 1, NULL, _binary_build_web_live_html_start,
-                               _binary_build_web_live_html_end, out, err);
+    Status status = write_page(report_json(&r), &r, NULL, 1, out, err);
     if (text_close(out) && status == STATUS_OK)
         status = fail_memory(err, 1, "a page");
     if (status != STATUS_OK) {

@@ -6,11 +6,6 @@ static const char BLUE[] = "#0072b2", VERMILLION[] = "#d55e00"; /* of the page (
 static const double ROOM =
     1.9; /* height of a drawing over the width of its frame, where it is as narrow as in a dossier */
 
-static json_t *drawing(const char *title, json_t *names, int height, json_t *columns)
-{
-    return json_of("title=%s names=%p height=%d columns=%p", title, names, height, columns);
-}
-
 static json_t *panel(const char *title, json_t *x, json_t *y, json_t *marks)
 {
     return json_of("title=%s x=%p y=%p marks=%p", title, x, y, marks);
@@ -65,36 +60,6 @@ static void add_dot(json_t *dots, double x, double y, const char *title, const c
     append(dots, "fill", json_string(fill));
 }
 
-/* A pin stands a twentieth of the element away from its end. */
-static void add_element(const Frame *f, const FrameElement *e, json_t *lines, json_t *dots)
-{
-    const FrameNode *at[2] = {&f->node[e->node[0]], &f->node[e->node[1]]};
-    char title[200];
-    snprintf(title, sizeof title, "%s: %s", e->name, f->section[e->section].name);
-    for (int end = 0; end < 2; end++) {
-        const FrameNode *here = at[end], *there = at[!end];
-        add_point(lines, here->x, here->z, "z", e->name);
-        append(lines, "title", json_words(title));
-        if (e->pinned[end])
-            add_dot(dots, here->x + (there->x - here->x) / 20, here->z + (there->z - here->z) / 20, title, "circle",
-                    "white");
-    }
-}
-
-/* Floors as dots; a triangle where the ground holds z, a square where it holds x alone, filled where it holds the
- * rotation too. */
-static void add_node(const Building *b, const FrameNode *n, json_t *dots)
-{
-    char title[80];
-    if (n->fixed[FRAME_X] || n->fixed[FRAME_Z])
-        add_dot(dots, n->x, n->z, n->name, n->fixed[FRAME_Z] ? "triangle" : "square",
-                n->fixed[FRAME_ROT] ? "black" : "white");
-    if (n->floor) {
-        snprintf(title, sizeof title, "floor %d: %.4g t", n->floor, building_floor_mass(b, n->floor - 1) / 1e3);
-        add_dot(dots, n->x, n->z, title, "circle", VERMILLION);
-    }
-}
-
 static json_t *height_axis(const double range[2])
 {
     return json_of("label=%s grid=%c domain=%p", "height [m]", 0, json_numbers(2, range));
@@ -128,10 +93,31 @@ Status building_drawing(const Building *b, const Frame *given, int modes, json_t
     Status status = given ? STATUS_OK : make_stick(&stick, b, err);
     double x[2] = {HUGE_VAL, -HUGE_VAL}, z[2] = {HUGE_VAL, -HUGE_VAL}, ground = 0;
     json_t *lines = json_of("mark=%s stroke=%s", "line", "black"), *dots = json_of("mark=%s stroke=%s", "dot", "black");
-    for (const FrameElement *e = f->element; e < f->element + f->n[FRAME_ELEMENTS]; e++)
-        add_element(f, e, lines, dots);
+    char title[200];
+
+    /* 1. Elements as lines; a pin stands a twentieth of the element away from its end. */
+    for (const FrameElement *e = f->element; e < f->element + f->n[FRAME_ELEMENTS]; e++) {
+        snprintf(title, sizeof title, "%s: %s", e->name, f->section[e->section].name);
+        for (int end = 0; end < 2; end++) {
+            const FrameNode *here = &f->node[e->node[end]], *there = &f->node[e->node[!end]];
+            add_point(lines, here->x, here->z, "z", e->name);
+            append(lines, "title", json_words(title));
+            if (e->pinned[end])
+                add_dot(dots, here->x + (there->x - here->x) / 20, here->z + (there->z - here->z) / 20, title, "circle",
+                        "white");
+        }
+    }
+
+    /* 2. Floors as dots; a triangle where the ground holds z, a square where it holds x alone, filled where it holds
+     * the rotation too. */
     for (const FrameNode *n = f->node; n < f->node + f->n[FRAME_NODES]; n++) {
-        add_node(b, n, dots);
+        if (n->fixed[FRAME_X] || n->fixed[FRAME_Z])
+            add_dot(dots, n->x, n->z, n->name, n->fixed[FRAME_Z] ? "triangle" : "square",
+                    n->fixed[FRAME_ROT] ? "black" : "white");
+        if (n->floor) {
+            snprintf(title, sizeof title, "floor %d: %.4g t", n->floor, building_floor_mass(b, n->floor - 1) / 1e3);
+            add_dot(dots, n->x, n->z, title, "circle", VERMILLION);
+        }
         x[0] = fmin(x[0], n->x), x[1] = fmax(x[1], n->x);
         z[0] = fmin(z[0], n->z), z[1] = fmax(z[1], n->z);
         ground = n->floor == b->n ? n->z - height_of(b, b->n) : ground;
@@ -139,7 +125,8 @@ Status building_drawing(const Building *b, const Frame *given, int modes, json_t
     z[1] = fmax(z[1], z[0] + ROOM * (x[1] - x[0]));
     json_t *frame = panel("To scale", json_of("axis=%p grid=%c around=%g", json_null(), 0, (x[0] + x[1]) / 2),
                           height_axis(z), json_pack("[oo]", lines, dots));
-    *out = drawing("", json_array(), 500, json_pack("[[o][o]]", frame, modes_panel(b, modes, ground, z)));
+    *out = json_of("title=%s names=%p height=%d columns=%p", "", json_array(), 500,
+                   json_pack("[[o][o]]", frame, modes_panel(b, modes, ground, z)));
     frame_free(&stick);
     if (status != STATUS_OK)
         json_decref(*out);

@@ -66,26 +66,14 @@ Status browser_check(const char *path, Err *err)
 
 /* ---- a page and what comes of it ------------------------------------------------------------------------------- */
 
-/* drawn NULL: the page as a PDF at path, else what it is when its scripts have run. */
-static Status have_opened(const char *page, const char *path, char **drawn, FILE *out, FILE *faults, Err *err)
+/* run is taken over. A page of its own beside path, of which nothing is left. drawn NULL: it becomes a PDF at path,
+ * else what it is when its scripts have run. */
+static Status draw(json_t *run, const Report *rows, const char *body, const char *path, char **drawn, Err *err)
 {
-    char option[PATH_MAX + 32] = "--dump-dom";
+    char page[PATH_MAX], whole[PATH_MAX] = "", option[PATH_MAX + 32] = "--dump-dom";
     size_t room = 0;
     if (!drawn)
         snprintf(option, sizeof option, "--print-to-pdf=%s", path);
-    const int status = start(option, page, out, faults);
-    if (status < 0)
-        return missing(path, err);
-    rewind(out);
-    if (status != 0 || (drawn && getdelim(drawn, &room, 0, out) <= 0))
-        return fail(err, STATUS_IO, "%s: Chromium ended with status %d and drew nothing", path, status);
-    return STATUS_OK;
-}
-
-/* run is taken over. A page of its own beside path, of which nothing is left. */
-static Status draw(json_t *run, const Report *rows, const char *body, const char *path, char **drawn, Err *err)
-{
-    char page[PATH_MAX], whole[PATH_MAX] = "";
     snprintf(page, sizeof page, "%.4000s.XXXXXX.html", strcmp(path, "-") == 0 ? "imtet" : path);
     const int fd = mkstemps(page, (int)strlen(".html"));
     FILE *file = fd < 0 ? NULL : fdopen(fd, "w"), *out = tmpfile(), *faults = tmpfile();
@@ -95,7 +83,13 @@ static Status draw(json_t *run, const Report *rows, const char *body, const char
         json_decref(run);
     if (file && fclose(file) != 0 && status == STATUS_OK)
         status = fail_errno(err, page, "cannot be written");
-    THEN(status, have_opened(realpath(page, whole), path, drawn, out, faults, err));
+    const int ended = status == STATUS_OK ? start(option, realpath(page, whole), out, faults) : 0;
+    if (ended < 0)
+        status = missing(path, err);
+    if (out)
+        rewind(out);
+    if (status == STATUS_OK && (ended != 0 || (drawn && getdelim(drawn, &room, 0, out) <= 0)))
+        status = fail(err, STATUS_IO, "%s: Chromium ended with status %d and drew nothing", path, ended);
     if (fd >= 0)
         unlink(page);
     if (out)
@@ -179,23 +173,9 @@ static int is_there(const Report *r, Condition wanted)
 }
 
 /* Both kinds of every picture that the page was asked for. */
-static Status save_all(const char *drawn, const Report *r, const char *folder, Err *err)
-{
-    static const char *const KINDS[] = {"svg", "png"};
-    for (size_t i = 0; i < 2 * N_OF(PICTURES); i++) {
-        char name[64], path[PATH_MAX];
-        snprintf(name, sizeof name, "%s.%s", PICTURES[i / 2].name, KINDS[i % 2]);
-        if (!is_there(r, PICTURES[i / 2].wants))
-            continue;
-        if (snprintf(path, sizeof path, "%s/%s", folder, name) >= (int)sizeof path)
-            return fail(err, STATUS_IO, "%.200s...: the path is too long", folder);
-        TRY(save(drawn, name, path, 1, err));
-    }
-    return STATUS_OK;
-}
-
 Status pictures_of(const Report *r, const char *folder, Err *err)
 {
+    static const char *const KINDS[] = {"svg", "png"};
     char *drawn = NULL, path[PATH_MAX];
     json_t *names = json_array();
     for (size_t i = 0; i < N_OF(PICTURES); i++)
@@ -207,7 +187,15 @@ Status pictures_of(const Report *r, const char *folder, Err *err)
     }
     snprintf(path, sizeof path, "%.4000s/page", folder);
     Status status = draw(json_put(report_json(r), "paper=%p", names), r, "", path, &drawn, err);
-    THEN(status, save_all(drawn, r, folder, err));
+    for (size_t i = 0; i < 2 * N_OF(PICTURES) && status == STATUS_OK; i++) {
+        char name[64];
+        snprintf(name, sizeof name, "%s.%s", PICTURES[i / 2].name, KINDS[i % 2]);
+        if (!is_there(r, PICTURES[i / 2].wants))
+            continue;
+        status = snprintf(path, sizeof path, "%s/%s", folder, name) < (int)sizeof path
+                     ? save(drawn, name, path, 1, err)
+                     : fail(err, STATUS_IO, "%.200s...: the path is too long", folder);
+    }
     free(drawn);
     return status;
 }

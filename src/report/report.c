@@ -3,26 +3,6 @@
 #include "motion/suite.h"
 #include "settings/options.h"
 
-/* The chosen design simulated with the run's own settings, its records where they are now. */
-static Status take_detail(Report *r, const DetailOptions *options, Err *err)
-{
-    Settings s = *r->run->settings;
-    TRY(record_paths_find(&s, r->run->provenance, &options->moved, err));
-    run_steps(r->run, r->chosen, &s.sim);
-    if (!r->has_detail)
-        return STATUS_OK;
-    DetailOptions of_run = *options;
-    of_run.run = r->run;
-    of_run.row = r->chosen;
-    TRY(detail_make(&s, (int)r->run->schema.n_var, run_x(r->run, r->chosen), &of_run, &r->detail, err));
-    /* A design that the study named has errors of its own, which are better known: one figure has one error. */
-    const double *known = r->is_robust ? NULL : r->run->table.row[r->chosen].err;
-    for (size_t k = 0; known && k < r->run->schema.n_obj + r->run->schema.n_extra; k++)
-        if (isfinite(known[k]))
-            r->detail.error[r->run->schema.order.of[k]] = known[k];
-    return STATUS_OK;
-}
-
 Report report_brief(const Run *run)
 {
     const Settings *s = run->settings;
@@ -34,12 +14,26 @@ Report report_brief(const Run *run)
 
 Status report_open(Report *r, const Run *run, size_t chosen, const DetailOptions *options, Err *err)
 {
+    Settings s = *run->settings;
+    DetailOptions of_run = *options;
     *r = report_brief(run);
-    r->chosen = chosen;
+    r->chosen = of_run.row = chosen;
+    of_run.run = run;
     if (run->n_front == 0)
         return run_why_empty(run, err);
     r->knee = run_knee(run);
-    const Status status = take_detail(r, options, err);
+
+    /* The chosen design simulated with the run's own settings, its records where they are now. */
+    Status status = record_paths_find(&s, run->provenance, &options->moved, err);
+    run_steps(run, chosen, &s.sim);
+    if (r->has_detail)
+        THEN(status, detail_make(&s, (int)run->schema.n_var, run_x(run, chosen), &of_run, &r->detail, err));
+
+    /* A design that the study named has errors of its own, which are better known: one figure has one error. */
+    const double *known = r->is_robust || !r->has_detail ? NULL : run->table.row[chosen].err;
+    for (size_t k = 0; known && k < run->schema.n_obj + run->schema.n_extra; k++)
+        if (isfinite(known[k]))
+            r->detail.error[run->schema.order.of[k]] = known[k];
     if (status != STATUS_OK)
         report_close(r);
     return status;

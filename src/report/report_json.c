@@ -8,34 +8,9 @@
 #include "settings/settings.h"
 #include "store/provenance.h"
 
-/* Every setting of the run. */
-static json_t *json_of_settings(const Settings *s)
-{
-    char *text = settings_text(s);
-    json_t *words = text ? json_words(text) : NULL;
-    free(text);
-    return words;
-}
-
 /* ---- the chosen design ----------------------------------------------------------------------------------------- */
 
-/* One value, a list, or [u > v, u < v] of lists. */
-static json_t *json_of_part(const ResultPart *part, size_t rows, size_t n, const double of[])
-{
-    switch (part->shape) {
-    case PART_NUMBER:
-        return json_number(*of);
-    case PART_LONG:
-    case PART_INT:
-    case PART_STOREY:
-        return json_integer((json_int_t)*of);
-    case PART_FLAG:
-        return json_boolean(*of != 0);
-    default:
-        return rows == SIDES ? json_pair(n, of, of + n) : json_numbers(n, of);
-    }
-}
-
+/* One value, a list, or [u > v, u < v] of lists each. */
 json_t *put_parts(json_t *o, SceneKind kind, const SimResult *r)
 {
     for (const ResultPart *part = RESULT_PARTS; part->name; part++) {
@@ -43,7 +18,12 @@ json_t *put_parts(json_t *o, SceneKind kind, const SimResult *r)
         size_t rows;
         const size_t n = result_part(r, SCENES[kind].has, part, values, &rows);
         if (n > 0)
-            json_object_set_new(o, part->name, json_of_part(part, rows, n, values));
+            json_object_set_new(o, part->name,
+                                part->shape == PART_NUMBER  ? json_number(*values)
+                                : part->shape == PART_FLAG  ? json_boolean(*values != 0)
+                                : part->shape < PART_FLOORS ? json_integer((json_int_t)*values)
+                                : rows == SIDES             ? json_pair(n, values, values + n)
+                                                            : json_numbers(n, values));
     }
     return o;
 }
@@ -112,12 +92,14 @@ static json_t *json_of_baselines(const Detail *d, const MeasureOrder *order)
     return list;
 }
 
-/* What every floor reaches at least and at most under the records of the run; empty: there is one. A record under which
- * the design fails is left out. */
-static json_t *json_of_band(const Detail *d)
+json_t *detail_json(const Detail *d, const MeasureOrder *order)
 {
     static const char *const KEYS[] = {"peak_displacement_m", "peak_drift_m", "peak_acceleration_g"};
-    json_t *band = json_object();
+    const size_t n = d->n_floors;
+    json_t *others = json_array(), *band = json_object();
+
+    /* What every floor reaches at least and at most under the records of the run; empty: there is one. A record under
+     * which the design fails is left out. */
     for (int k = 0; k < 3 && d->by_record; k++) {
         double low[FLOORS_MAX], high[FLOORS_MAX];
         for (int j = 0; j < d->n_floors; j++) {
@@ -130,16 +112,8 @@ static json_t *json_of_band(const Detail *d)
                 high[j] = fmax(high[j], v);
             }
         }
-        const size_t n = d->n_floors;
         json_object_set_new(band, KEYS[k], json_pair(n, low, high));
     }
-    return band;
-}
-
-json_t *detail_json(const Detail *d, const MeasureOrder *order)
-{
-    const size_t n = d->n_floors;
-    json_t *others = json_array();
     for (size_t i = 0; i < d->n_elsewhere; i++) {
         const Elsewhere *e = &d->elsewhere[i];
         json_array_append_new(others,
@@ -160,7 +134,7 @@ json_t *detail_json(const Detail *d, const MeasureOrder *order)
         json_array_append_new(error, json_number(d->error[order->of[k]]));
         json_array_append_new(standard, json_number(d->standard_error[order->of[k]]));
     }
-    json_put(o, "error=%p standard_error=%p band=%p records=%ld", error, standard, json_of_band(d), d->n_records);
+    json_put(o, "error=%p standard_error=%p band=%p records=%ld", error, standard, band, d->n_records);
     if (d->ladder || d->no_ladder.text[0])
         json_put(o, "ladder=%p", d->ladder ? ladder_json(d->ladder) : json_of("reason=%s", d->no_ladder.text));
     json_put(o, "verdict=%s", d->verdict);
@@ -173,17 +147,6 @@ json_t *detail_json(const Detail *d, const MeasureOrder *order)
 
 /* ---- the run --------------------------------------------------------------------------------------------------- */
 
-/* Lower and upper bounds of the search; null where the problem is not the tower. */
-static json_t *json_of_bounds(const Report *r)
-{
-    double lower[DESIGN_VARIABLES_MAX], upper[DESIGN_VARIABLES_MAX];
-    const Schema *schema = &r->run->schema;
-    if (!r->has_detail)
-        return json_null();
-    design_bounds(&schema->design, &r->run->settings->design, lower, upper);
-    return json_of("lower=%p upper=%p", json_numbers(schema->n_var, lower), json_numbers(schema->n_var, upper));
-}
-
 /* Of objective k, or of measure k - n_obj. */
 static json_t *json_of_result_column(const Schema *schema, size_t k)
 {
@@ -193,43 +156,31 @@ static json_t *json_of_result_column(const Schema *schema, size_t k)
                    schema->order.n_obj > 0 ? measure(schema->order.of[k])->what : w.title);
 }
 
-/* Of a choice, in their order; null for other variables. */
-static json_t *json_of_choice(const Schema *schema, size_t j)
-{
-    char word[KIND_WORD_MAX];
-    json_t *words = schema_word(schema, j, 0, word) ? json_array() : json_null();
-    for (int i = 0; json_is_array(words) && schema_word(schema, j, i, word); i++)
-        json_array_append_new(words, json_words(word));
-    return words;
-}
-
+/* words: of a choice, in their order; null for other variables. bounds of the search: null where the problem is not the
+ * tower. */
 static json_t *json_of_names(const Report *r)
 {
     const Schema *schema = &r->run->schema;
+    double lower[DESIGN_VARIABLES_MAX], upper[DESIGN_VARIABLES_MAX];
     json_t *variables = json_array(), *words = json_array(), *objectives = json_array(), *limited = json_array();
     for (size_t j = 0; j < schema->n_var; j++) {
+        char word[KIND_WORD_MAX];
+        json_t *of_choice = schema_word(schema, j, 0, word) ? json_array() : json_null();
+        for (int i = 0; json_is_array(of_choice) && schema_word(schema, j, i, word); i++)
+            json_array_append_new(of_choice, json_words(word));
         json_array_append_new(variables, json_words(schema_variable(schema, j)->name));
-        json_array_append_new(words, json_of_choice(schema, j));
+        json_array_append_new(words, of_choice);
     }
+    if (r->has_detail)
+        design_bounds(&schema->design, &r->run->settings->design, lower, upper);
     for (size_t k = 0; k < schema->n_obj; k++)
         json_array_append_new(objectives, json_of_result_column(schema, k));
     for (size_t k = 0; k < schema->n_limited; k++)
         json_array_append_new(limited, json_of_result_column(schema, schema->n_obj + schema->limited[k]));
     return json_of("variables=%p words=%p objectives=%p limited=%p bounds=%p", variables, words, objectives, limited,
-                   json_of_bounds(r));
-}
-
-/* Ids of the designs shown that are beyond the contact law. */
-static json_t *json_of_beyond_law(const Report *r)
-{
-    const Run *run = r->run;
-    json_t *ids = json_array();
-    for (size_t i = 0; r->has_detail && i < r->n_shown; i++) {
-        const Evaluation *row = &run->table.row[r->shown[i]];
-        if (schema_value(&run->schema, MEASURE_BEYOND_LAW, row->f, row->extra) > 0)
-            json_array_append_new(ids, json_integer(row->id));
-    }
-    return ids;
+                   r->has_detail ? json_of("lower=%p upper=%p", json_numbers(schema->n_var, lower),
+                                           json_numbers(schema->n_var, upper))
+                                 : json_null());
 }
 
 json_t *importance_json(const Importance *m, const Schema *schema)
@@ -254,28 +205,6 @@ json_t *growth_json(const Run *run)
         json_array_append_new(error, json_number(hypervolume_error(v)));
     }
     return json_of("simulated=%p volume=%p error=%p", simulated, volume, error);
-}
-
-/* What has to be borne. */
-static json_t *json_of_borne(void)
-{
-    int borne[MEASURES_LISTED];
-    const int n = measures_borne(borne);
-    json_t *columns = json_array();
-    for (int i = 0; i < n; i++) {
-        const Measure *m = measure(borne[i]);
-        json_array_append_new(columns, json_of("name=%s title=%s unit=%s factor=%g", m->name, m->words.title,
-                                               m->words.unit, m->words.factor));
-    }
-    return columns;
-}
-
-static size_t n_evaluated(const Run *run)
-{
-    size_t n = 0;
-    for (size_t i = 0; i < run->table.n; i++)
-        n += run->table.row[i].kind != KIND_UNFINISHED;
-    return n;
 }
 
 /* The chosen design as found and to be built. */
@@ -317,12 +246,30 @@ json_t *report_json(const Report *r)
         name[n - 1] = 0;
     const char *slash = strrchr(name, '/');
     double likely[OBJECTIVES_MAX];
-    char rule[RULE_WORDS_MAX];
+    char rule[RULE_WORDS_MAX], *settings = settings_text(run->settings);
     Err fault = {0};
     const int has_errors = run_likely(run, r->chosen, likely);
-    json_t *notes;
+    json_t *notes, *words = settings ? json_words(settings) : NULL;
+    free(settings);
     notes_of_run(run, &notes, &fault);
     words_of_rule(run->settings, rule);
+
+    /* Designs that were simulated; ids of those shown that are beyond the contact law; what has to be borne. */
+    json_t *beyond_law = json_array(), *columns = json_array();
+    int borne[MEASURES_LISTED];
+    size_t n_evaluated = 0;
+    for (size_t i = 0; i < run->table.n; i++)
+        n_evaluated += run->table.row[i].kind != KIND_UNFINISHED;
+    for (size_t i = 0; r->has_detail && i < r->n_shown; i++) {
+        const Evaluation *row = &run->table.row[r->shown[i]];
+        if (schema_value(&run->schema, MEASURE_BEYOND_LAW, row->f, row->extra) > 0)
+            json_array_append_new(beyond_law, json_integer(row->id));
+    }
+    for (int i = 0, n = measures_borne(borne); i < n; i++) {
+        const Measure *m = measure(borne[i]);
+        json_array_append_new(columns, json_of("name=%s title=%s unit=%s factor=%g", m->name, m->words.title,
+                                               m->words.unit, m->words.factor));
+    }
     return json_of(
         "rule=%s chosen_error=%p version=%s revision=%s name=%s folder=%s id_step=%ld tower=%c robust=%c building=%s "
         "spread=%s "
@@ -332,9 +279,8 @@ json_t *report_json(const Report *r)
         slash && slash[1] && !run->id_step ? slash + 1 : name, name, run->id_step, r->has_detail, r->is_robust,
         run->settings->building.model, spread_word(run->settings->sim.gap_tolerance_m, &run->settings->sim.uncertain),
         run->table.row[r->knee].id, run->table.row[r->chosen].id,
-        json_numbers(run->schema.n_obj, run_f(run, r->chosen)), n_evaluated(run), run->n_failed, run->n_front,
-        json_of_names(r), json_of_beyond_law(r), importance_json(&r->importance, &run->schema), growth_json(run),
+        json_numbers(run->schema.n_obj, run_f(run, r->chosen)), n_evaluated, run->n_failed, run->n_front,
+        json_of_names(r), beyond_law, importance_json(&r->importance, &run->schema), growth_json(run),
         r->detail.n_floors > 0 ? detail_json(&r->detail, &run->schema.order) : json_null(),
-        json_of_pair(run, r->chosen), json_of_borne(), notes, fault.text, json_of_settings(run->settings),
-        run->provenance);
+        json_of_pair(run, r->chosen), columns, notes, fault.text, words, run->provenance);
 }

@@ -88,12 +88,22 @@ __attribute__((format(printf, 4, 5))) static Status put_next(Verdict *v, Err *er
     return settings_put(&v->next, key, value, err);
 }
 
-/* Effects that some scene needs and the model leaves out, by the first scene that needs them. */
-static Status say_left_out(Verdict *v, const Ladder *l, Err *err)
+/* s: under the first record alone. */
+static Status say_model(Verdict *v, const Settings *s, Err *err)
 {
     static const char *const WHO[] = {"the design", "the core rigidly connected", "the building alone", "all together"};
     size_t n_said = 0;
-    for (size_t who = 0; who < N_OF(WHO); who++)
+    Ladder *found = NULL;
+    const Ladder *l = v->of->ladder;
+    Status status = STATUS_OK;
+    if (!l) {
+        TRY_ROOM(found, 1, "a ladder", err);
+        status = ladder_find(s, v->x, LADDER_BRIEF, found, err);
+        l = found;
+    }
+
+    /* Effects that some scene needs and the model leaves out, by the first scene that needs them. */
+    for (size_t who = 0; who < N_OF(WHO) && status == STATUS_OK; who++)
         for (size_t i = 0, n = 0; i < l->n; i++) {
             const LadderEffect *e = &l->effect[i];
             size_t scene = 0;
@@ -107,22 +117,7 @@ static Status say_left_out(Verdict *v, const Ladder *l, Err *err)
         }
     for (size_t i = 0; i < l->n; i++) /* in the order of the effects: a mat that lifts is behind its ground */
         if (l->effect[i].is_kept && !l->effect[i].is_set)
-            TRY(put_next(v, err, l->effect[i].key, "%s", l->effect[i].with));
-    return STATUS_OK;
-}
-
-/* s: under the first record alone. */
-static Status say_model(Verdict *v, const Settings *s, Err *err)
-{
-    Ladder *found = NULL;
-    const Ladder *l = v->of->ladder;
-    Status status = STATUS_OK;
-    if (!l) {
-        TRY_ROOM(found, 1, "a ladder", err);
-        status = ladder_find(s, v->x, LADDER_BRIEF, found, err);
-        l = found;
-    }
-    THEN(status, say_left_out(v, l, err));
+            THEN(status, put_next(v, err, l->effect[i].key, "%s", l->effect[i].with));
     fputs(v->has_next ? ". With these effects it has " : "The model has every effect that the scenes need: ", v->out);
     if (v->has_next) {
         say_values(v, l->set[0], NULL);
@@ -229,27 +224,6 @@ static void put_set(const char *key, unsigned flags, const char *was, const char
     text_set(out, "%s=%s", key, is);
 }
 
-/* What nothing before has asked for: gaps that are off, links; else the design is made easier to build. */
-static Status say_next(Verdict *v, const Settings *given, Err *err)
-{
-    if (!v->has_next && !(v->off <= OFF_DRAWING)) {
-        TRY(put_next(v, err, "sim.gap_tolerance_m", "%g", fmax(given->sim.gap_tolerance_m, VERDICT_GAP_M)));
-        TRY(put_next(v, err, "sim.replicates", "4"));
-    }
-    if (!v->has_next && v->n_links > v->e->n_read) {
-        TRY(put_next(v, err, "design.variables", "gaps, thickness, links"));
-        TRY(put_next(v, err, "design.devices", "gap, link, none"));
-    }
-    if (!v->has_next && v->of->design) {
-        fprintf(v->out, "Next: imtet simplify %s --design %s --gap-step 5\n", v->of->operand, v->of->design);
-        return STATUS_OK;
-    }
-    fprintf(v->out, "Next: imtet optimize %s --new", v->of->operand);
-    settings_compare(given, &v->next, put_set, v->out);
-    fputc('\n', v->out);
-    return STATUS_OK;
-}
-
 Status verdict_find(const Settings *given, const Evaluations *e, const double x[], const VerdictOf *of, char **out,
                     Err *err)
 {
@@ -274,7 +248,23 @@ Status verdict_find(const Settings *given, const Evaluations *e, const double x[
     Status status = say_model(&v, &s, err);
     THEN(status, say_as_built(&v, &s, err));
     THEN(status, say_limits(&v, &s, err));
-    THEN(status, say_next(&v, given, err));
+
+    /* What nothing before has asked for: gaps that are off, links; else the design is made easier to build. */
+    if (!v.has_next && !(v.off <= OFF_DRAWING)) {
+        THEN(status, put_next(&v, err, "sim.gap_tolerance_m", "%g", fmax(given->sim.gap_tolerance_m, VERDICT_GAP_M)));
+        THEN(status, put_next(&v, err, "sim.replicates", "4"));
+    }
+    if (!v.has_next && v.n_links > e->n_read) {
+        THEN(status, put_next(&v, err, "design.variables", "gaps, thickness, links"));
+        THEN(status, put_next(&v, err, "design.devices", "gap, link, none"));
+    }
+    if (!v.has_next && of->design) {
+        fprintf(v.out, "Next: imtet simplify %s --design %s --gap-step 5\n", of->operand, of->design);
+    } else {
+        fprintf(v.out, "Next: imtet optimize %s --new", of->operand);
+        settings_compare(given, &v.next, put_set, v.out);
+        fputc('\n', v.out);
+    }
     if (text_close(v.out) != 0)
         THEN(status, fail_memory(err, 1, "a verdict"));
     if (status == STATUS_OK)

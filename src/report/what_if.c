@@ -18,21 +18,6 @@ static const char ONCE[] = " --set sim.replicates=1 --set sim.gap_tolerance_m=0 
                            "--set search.fidelity=off";
 static const char CERTAIN[] = " --set sim.uncertain=none";
 
-/* The numbers that whole and stepped variables take; null of others: the page has the words of a choice. */
-static json_t *values_of(const Problem *p)
-{
-    json_t *all = json_array();
-    for (size_t d = 0; d < p->n_var; d++) {
-        const Steps *steps = problem_kind(p, d) == VARIABLE_STEPPED ? &p->steps[d] : NULL;
-        json_t *list = steps || problem_kind(p, d) == VARIABLE_WHOLE ? json_array() : json_null();
-        const size_t n = steps ? steps->n : (size_t)(p->upper[d] - p->lower[d]) + 1;
-        for (size_t i = 0; json_is_array(list) && i < n; i++)
-            json_array_append_new(list, json_number(steps ? steps_at(steps, i) : p->lower[d] + (double)i));
-        json_array_append_new(all, list);
-    }
-    return all;
-}
-
 static Status name_record(const char *source, void *user, Err *err)
 {
     (void)err;
@@ -100,12 +85,23 @@ Status what_if_json(const Run *run, const RecordPaths *moved, json_t **out, Err 
     if (status == STATUS_OK) {
         const double pga = motion_peak(&tower_record(tower_of(&p), 0)->motion) / GRAVITY;
         const size_t n_simulations = (size_t)s.sim.replicates * suite_count(&s.motion);
+        json_t *values = json_array();
+
+        /* The numbers that whole and stepped variables take; null of others: the page has the words of a choice. */
+        for (size_t d = 0; d < p.n_var; d++) {
+            const Steps *steps = problem_kind(&p, d) == VARIABLE_STEPPED ? &p.steps[d] : NULL;
+            json_t *list = steps || problem_kind(&p, d) == VARIABLE_WHOLE ? json_array() : json_null();
+            const size_t n_values = steps ? steps->n : (size_t)(p.upper[d] - p.lower[d]) + 1;
+            for (size_t i = 0; json_is_array(list) && i < n_values; i++)
+                json_array_append_new(list, json_number(steps ? steps_at(steps, i) : p.lower[d] + (double)i));
+            json_array_append_new(values, list);
+        }
         snprintf(options, sizeof options, "%s%s", n_simulations == 1 ? "" : ONCE,
                  is_uncertain(&s.sim.uncertain) ? CERTAIN : "");
         *out = json_of(
             "lower=%p upper=%p values=%p pga_g=%p stretch=%p restitution=%p records=%p simulations=%ld options=%s "
             "scene=%s",
-            json_numbers(p.n_var, p.lower), json_numbers(p.n_var, p.upper), values_of(&p),
+            json_numbers(p.n_var, p.lower), json_numbers(p.n_var, p.upper), values,
             json_numbers(3, (double[]){pga / PGA_SHARE, pga, pga * PGA_SHARE}),
             json_numbers(
                 3, (double[]){s.motion.stretch / STRETCH_SHARE, s.motion.stretch, s.motion.stretch * STRETCH_SHARE}),

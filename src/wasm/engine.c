@@ -105,31 +105,6 @@ static void say_list(const char *name, size_t n, size_t step, const double value
     say("]");
 }
 
-/* Every measure, and all else that there is of a result (RESULT_PARTS). objectives NULL: it failed. */
-static void say_result(const Page *p, SceneKind kind, const double objectives[])
-{
-    const SimResult *r = &p->result;
-    double values[SIDES * FLOORS_MAX];
-    instance.n = 0;
-    instance.digits = 17;
-    say("{\"reason\":\"%s\",\"beyond_law\":%s", r->reason, beyond_contact_law(r) ? "true" : "false");
-    say_list("objectives", objectives ? (size_t)p->order.n_obj : 0, 1, objectives);
-    for (int j = 0; j < r->n_floors; j++)
-        values[j] = design_gap(&p->design, j);
-    say_list("gap_m", (size_t)r->n_floors, 1, values);
-    for (int k = 0; k < MEASURES_LISTED; k++)
-        say_number(measure(k)->name, measure_value(r, k));
-    for (const ResultPart *part = RESULT_PARTS; part->name; part++) {
-        size_t rows;
-        const size_t n = result_part(r, SCENES[kind].has, part, values, &rows);
-        if (part->shape >= PART_FLOORS && n > 0)
-            say_list(part->name, rows * n, 1, values);
-        else if (n > 0)
-            say_number(part->name, values[0]);
-    }
-    say("}");
-}
-
 const char *engine_answer(void)
 {
     return instance.text;
@@ -215,7 +190,7 @@ int engine_run(Page *p, int kind, int whole)
     Measured *part = calloc(plan.n_records * plan.n_replicates, sizeof *part);
     Err err = {0};
     ReplicateSummary sum;
-    double objectives[N_MEASURES];
+    double objectives[N_MEASURES], values[SIDES * FLOORS_MAX];
     const double *g = p->ground;
     Status status = part ? STATUS_OK : fail_memory(&err, plan.n_records, "simulations");
 
@@ -237,7 +212,27 @@ int engine_run(Page *p, int kind, int whole)
         return refuse(&err);
     for (int k = 0; k < p->order.n_obj; k++)
         objectives[k] = sum.mean[p->order.of[k]];
-    say_result(p, (SceneKind)kind, sum.outcome == OUTCOME_OK ? objectives : NULL);
+
+    /* Every measure, and all else that there is of a result (RESULT_PARTS). */
+    const SimResult *r = &p->result;
+    instance.n = 0;
+    instance.digits = 17;
+    say("{\"reason\":\"%s\",\"beyond_law\":%s", r->reason, beyond_contact_law(r) ? "true" : "false");
+    say_list("objectives", sum.outcome == OUTCOME_OK ? (size_t)p->order.n_obj : 0, 1, objectives);
+    for (int j = 0; j < r->n_floors; j++)
+        values[j] = design_gap(&p->design, j);
+    say_list("gap_m", (size_t)r->n_floors, 1, values);
+    for (int k = 0; k < MEASURES_LISTED; k++)
+        say_number(measure(k)->name, measure_value(r, k));
+    for (const ResultPart *part = RESULT_PARTS; part->name; part++) {
+        size_t rows;
+        const size_t n = result_part(r, SCENES[kind].has, part, values, &rows);
+        if (part->shape >= PART_FLOORS && n > 0)
+            say_list(part->name, rows * n, 1, values);
+        else if (n > 0)
+            say_number(part->name, values[0]);
+    }
+    say("}");
     return 1;
 }
 

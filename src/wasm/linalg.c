@@ -31,22 +31,14 @@ static void substitute(int n, int m, const double L[], int is_transposed, double
     }
 }
 
-/* Rows p and q of A (and of V) turn so that A_pq becomes 0 (Golub and Van Loan, Matrix Computations, section 8.5.2). */
-static void rotate(int n, int p, int q, double A[], double V[])
+/* Turns two vectors of n numbers, `stride` apart, in their plane: c of one less s of the other, s of one and c of the
+ * other. */
+static void rotate(int n, int stride, double one[], double other[], double c, double s)
 {
-    const double tau = (A[q * n + q] - A[p * n + p]) / (2 * A[p * n + q]);
-    const double t = (tau < 0 ? -1 : 1) / (fabs(tau) + sqrt(1 + tau * tau)), c = 1 / sqrt(1 + t * t), s = t * c;
-    for (int k = 0; k < n; k++) {
-        const double a = A[k * n + p], b = A[k * n + q];
-        A[k * n + p] = c * a - s * b;
-        A[k * n + q] = s * a + c * b;
-    }
-    for (int k = 0; k < n; k++) {
-        const double a = A[p * n + k], b = A[q * n + k], v = V[p * n + k], w = V[q * n + k];
-        A[p * n + k] = c * a - s * b;
-        A[q * n + k] = s * a + c * b;
-        V[p * n + k] = c * v - s * w;
-        V[q * n + k] = s * v + c * w;
+    for (int k = 0; k < n * stride; k += stride) {
+        const double a = one[k], b = other[k];
+        one[k] = c * a - s * b;
+        other[k] = s * a + c * b;
     }
 }
 
@@ -60,11 +52,17 @@ static int diagonalize(int n, double A[], double V[])
     for (int sweep = 0; sweep < SWEEPS_MAX; sweep++) {
         int turned = 0;
         for (int p = 0; p < n; p++)
-            for (int q = p + 1; q < n; q++)
-                if (fabs(A[p * n + q]) > 1e-17 * sqrt(fabs(A[p * n + p] * A[q * n + q]))) {
-                    rotate(n, p, q, A, V);
-                    turned = 1;
-                }
+            for (int q = p + 1; q < n; q++) {
+                if (!(fabs(A[p * n + q]) > 1e-17 * sqrt(fabs(A[p * n + p] * A[q * n + q]))))
+                    continue;
+                /* A_pq becomes 0 (Golub and Van Loan, Matrix Computations, section 8.5.2). */
+                const double tau = (A[q * n + q] - A[p * n + p]) / (2 * A[p * n + q]);
+                const double t = (tau < 0 ? -1 : 1) / (fabs(tau) + sqrt(1 + tau * tau)), c = 1 / sqrt(1 + t * t);
+                rotate(n, n, A + p, A + q, c, t * c);
+                rotate(n, 1, A + p * n, A + q * n, c, t * c);
+                rotate(n, 1, V + p * n, V + q * n, c, t * c);
+                turned = 1;
+            }
         if (!turned)
             return 1;
     }
