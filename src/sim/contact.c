@@ -96,12 +96,6 @@ double contact_bumper_stored(const Contact *c, double p)
     return s.force * (0.4 * s.root * s.root + 0.5 * s.force / c->bumper);
 }
 
-/* a of a bumper that rebounds like a linear spring and dashpot of damping ratio zeta, from contact to contact. */
-static double bumper_damping(double zeta)
-{
-    return zeta > 0 ? contact_damping(exp(-M_PI * zeta / sqrt(1 - zeta * zeta))) : 0;
-}
-
 Status contact_make(Contact *c, const ContactOptions *o, Err *err)
 {
     const double r = o->restitution, nu = o->poisson;
@@ -133,6 +127,9 @@ Status contact_make(Contact *c, const ContactOptions *o, Err *err)
     }
     c->v0_floor = 1e-3; /* a tenth of it changes no digit of a tower (docs/measured/contact-v0.csv) */
     c->bumper = o->bumper_stiffness_n_m;
-    c->bumper_a = bumper_damping(o->bumper_damping);
+
+    /* A bumper rebounds like a linear spring and dashpot of damping ratio zeta, from contact to contact. */
+    const double zeta = o->bumper_damping;
+    c->bumper_a = zeta > 0 ? contact_damping(exp(-M_PI * zeta / sqrt(1 - zeta * zeta))) : 0;
     return STATUS_OK;
 }

@@ -75,30 +75,6 @@ static void layout(void *object, Carve *c)
     CARVE(c, f->peak, f->width);
 }
 
-/* Another step of the samples: the filter for it, the lengths that follow from it, and memory for these. */
-static void set_spacing(FloorFilter *f, double h)
-{
-    Err err = {0};
-    double s[FILTER_SECTIONS][2] = {{0}};
-    free(f->store);
-    f->store = NULL;
-    f->h = h;
-    f->out_of_memory = 0;
-    if (filter_butterworth(&f->filter, FILTER_LOW_PASS, f->cutoff_hz, h, &err) != STATUS_OK)
-        return;
-    f->padding = filter_padding(&f->filter);
-    f->block = 2 * f->padding;
-    f->norm = 0;
-    for (size_t i = 0; i < f->padding; i++) {
-        double x = i == 0;
-        FILTER_STEP(&f->filter, x, s);
-        f->norm += fabs(x);
-    }
-    f->below = 3 / (4 * f->norm * f->norm);
-    f->store = carve_all(layout, f);
-    f->out_of_memory = !f->store;
-}
-
 /* The floors are at rest. */
 static void begin(FloorFilter *f)
 {
@@ -111,10 +87,32 @@ static void begin(FloorFilter *f)
 
 void floor_filter_start(FloorFilter *f, double h)
 {
-    if (!f->store || h != f->h)
-        set_spacing(f, h);
+    /* 1. Another step of the samples: the filter for it, the lengths that follow from it, and memory for these. */
+    if (!f->store || h != f->h) {
+        Err err = {0};
+        double s[FILTER_SECTIONS][2] = {{0}};
+        free(f->store);
+        f->store = NULL;
+        f->h = h;
+        f->out_of_memory = 0;
+        if (filter_butterworth(&f->filter, FILTER_LOW_PASS, f->cutoff_hz, h, &err) != STATUS_OK)
+            return;
+        f->padding = filter_padding(&f->filter);
+        f->block = 2 * f->padding;
+        f->norm = 0;
+        for (size_t i = 0; i < f->padding; i++) {
+            double x = i == 0;
+            FILTER_STEP(&f->filter, x, s);
+            f->norm += fabs(x);
+        }
+        f->below = 3 / (4 * f->norm * f->norm);
+        f->store = carve_all(layout, f);
+        f->out_of_memory = !f->store;
+    }
     if (!f->store)
         return;
+
+    /* 2. Everything is at rest. */
     begin(f);
     f->resumes = 0;
     for (size_t j = 0; j < f->width; j++) {

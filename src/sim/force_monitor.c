@@ -54,7 +54,6 @@ struct ForceMonitor {
     SimContactFn contact;
     void *contact_user;
     SimForces sum; /* contacts so far */
-    void *store;
 };
 
 static int eights(int n)
@@ -86,32 +85,22 @@ static void layout(void *object, Carve *c)
 
 Status force_monitor_create(ForceMonitor **out, int n_floors, int nb, Err *err)
 {
-    *out = NULL;
-    ForceMonitor *m;
-    TRY_ROOM(m, 1, "a monitor of forces", err);
-    m->n = n_floors;
-    m->nb = nb;
-    m->at_both = eights(2 * n_floors + 1);
-    m->at_slow = m->at_both + 1;
-    m->at_velocity = m->at_slow + eights(n_floors + 1);
-    m->n_groups = m->at_velocity + eights(n_floors);
-    m->store = carve_all(layout, m);
-    if (!m->store) {
-        free(m);
+    ForceMonitor plain = {.n = n_floors, .nb = nb, .at_both = eights(2 * n_floors + 1)};
+    plain.at_slow = plain.at_both + 1;
+    plain.at_velocity = plain.at_slow + eights(n_floors + 1);
+    plain.n_groups = plain.at_velocity + eights(n_floors);
+    ForceMonitor *m = *out = carve_object(layout, &plain, sizeof plain);
+    if (!m)
         return fail_memory(err, n_floors, "floors");
-    }
     for (int i = m->at_slow; i < m->n_groups; i++) {
         m->group[i].spacing = SLOW_SPACING;
         m->group[i].of_velocities = i >= m->at_velocity;
     }
-    *out = m;
     return STATUS_OK;
 }
 
 void force_monitor_free(ForceMonitor *m)
 {
-    if (m)
-        free(m->store);
     free(m);
 }
 
@@ -402,25 +391,19 @@ CLONED static void set_reach(int count, const double squares[], const double lar
 }
 
 /* The largest over the outputs of a group. */
-CLONED static void find_limits(const Group *g, double *const limit[N_REACHES], int i)
+CLONED static void set_limits(ForceMonitor *m, int i)
 {
+    Group *g = &m->group[i];
     const v8 least = (v8){0} + 1e-290, scale = 1 / V8_WHERE(g->peak > least, g->peak, least);
-    for (int q = 0; q < N_REACHES; q++) {
+    g->stale = 0;
+    g->set = m->looks;
+    for (int q = 0; q < N_REACHES && is_followed(m, i); q++) {
         v8 most = g->reach[q] * scale, turned = __builtin_shufflevector(most, most, 4, 5, 6, 7, 0, 1, 2, 3);
         most = V8_WHERE(most > turned, most, turned);
         turned = __builtin_shufflevector(most, most, 2, 3, 0, 1, 6, 7, 4, 5);
         most = V8_WHERE(most > turned, most, turned);
-        limit[q][i] = most[0] > most[1] ? most[0] : most[1];
+        m->limit[q][i] = most[0] > most[1] ? most[0] : most[1];
     }
-}
-
-static void set_limits(ForceMonitor *m, int i)
-{
-    Group *g = &m->group[i];
-    if (is_followed(m, i))
-        find_limits(g, m->limit, i);
-    g->stale = 0;
-    g->set = m->looks;
 }
 
 void force_monitor_energies(ForceMonitor *m, const double building[], const double core[])
@@ -442,10 +425,13 @@ enum { LOOKS_BETWEEN = 4 };
 
 enum { GROUPS_MAX = 4 * FLOORS_MAX / LANES8 + 8 };
 
-/* Group by group: may it come near a peak? Returns whether any may. */
-CLONED static int find_over(const ForceMonitor *m, const ForceReach *r, m8 over[])
+CLONED int force_monitor_may_rise(ForceMonitor *m, const ForceReach *r)
 {
-    m8 all = {0};
+    m8 over[GROUPS_MAX / LANES8], all = {0};
+    m->looks++;
+    m->n_due = 0;
+
+    /* 1. Group by group: may it come near a peak? */
     for (int b = 0; b < eights(m->n_groups); b++) {
         v8 sum = {0};
         for (int q = 0; q < N_REACHES; q++)
@@ -453,32 +439,22 @@ CLONED static int find_over(const ForceMonitor *m, const ForceReach *r, m8 over[
         over[b] = ~(sum <= 1);
         all |= over[b];
     }
-    return m8_any(&all);
-}
-
-/* The same of a group whose limits are set anew, if they are out of date. */
-static int is_below_now(ForceMonitor *m, int i, const ForceReach *r)
-{
-    double sum = 0;
-    if (!m->group[i].stale || m->looks < m->group[i].set + LOOKS_BETWEEN)
+    if (!m8_any(&all) && m->rising == 0)
         return 0;
-    set_limits(m, i);
-    for (int q = 0; q < N_REACHES; q++)
-        sum += m->limit[q][i] * r->by[q];
-    return sum <= 1;
-}
 
-int force_monitor_may_rise(ForceMonitor *m, const ForceReach *r)
-{
-    m8 over[GROUPS_MAX / LANES8];
-    m->looks++;
-    m->n_due = 0;
-    if (!find_over(m, r, over) && m->rising == 0)
-        return 0;
+    /* 2. The limits of these are set anew, if they are out of date. */
     for (int i = 0; i < m->n_groups; i++) {
         const Group *g = &m->group[i];
         const int rises = g->rose && g->look == m->looks - 1; /* its top may lie before the next point */
-        if (rises || (over[i / LANES8][i % LANES8] && !is_below_now(m, i, r)))
+        int is_over = over[i / LANES8][i % LANES8] != 0;
+        if (!rises && is_over && g->stale && m->looks >= g->set + LOOKS_BETWEEN) {
+            double sum = 0;
+            set_limits(m, i);
+            for (int q = 0; q < N_REACHES; q++)
+                sum += m->limit[q][i] * r->by[q];
+            is_over = !(sum <= 1);
+        }
+        if (rises || is_over)
             m->due[m->n_due++] = i;
     }
     m->rising = 0;

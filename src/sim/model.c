@@ -106,24 +106,13 @@ Status model_set(SimModel *model, const SceneOptions *o, const Building *b, cons
     memset(model->R, 0, sizeof(double) * (size_t)(model->m_pad * model->n_pad));
     memset(model->RT, 0, sizeof(double) * (size_t)(model->m_pad * model->n_pad));
     for (int i = 0; i < model->m_pad; i++) {
-        model->omega[i] = 1;
-        model->zeta[i] = 0.5;
-        model->gamma[i] = 0;
-    }
-    for (int i = 0; i < model->nb; i++) {
-        model->omega[i] = building->omega[i];
-        model->zeta[i] = building->zeta[i];
-        model->gamma[i] = building->gamma[i];
-        for (int j = 0; j < n; j++)
+        const int k = i - model->nb, is_own = k < 0, is_there = i < model->m;
+        model->omega[i] = !is_there ? 1 : is_own ? building->omega[i] : core->omega[k];
+        model->zeta[i] = !is_there ? 0.5 : is_own ? building->zeta[i] : core->zeta[k];
+        model->gamma[i] = !is_there ? 0 : is_own ? building->gamma[i] : core->gamma[k];
+        for (int j = 0; j < n && is_there; j++)
             model->R[i * model->n_pad + j] = model->RT[j * model->m_pad + i] =
-                building_shape(building, j, building->arm_contact, i);
-    }
-    for (int k = 0, i = model->nb; k < model->nc; k++, i++) {
-        model->omega[i] = core->omega[k];
-        model->zeta[i] = core->zeta[k];
-        model->gamma[i] = core->gamma[k];
-        for (int j = 0; j < n; j++)
-            model->R[i * model->n_pad + j] = model->RT[j * model->m_pad + i] = -core->phi[j * n + k];
+                is_own ? building_shape(building, j, building->arm_contact, i) : -core->phi[j * n + k];
     }
     memcpy(model->like, building->like, (size_t)model->nb * sizeof *model->like);
     set_points(model, o, b, core);

@@ -284,16 +284,20 @@ static void core_nodes(const SimModel *model, const SimSample *s, const double x
         out[j] = 0 - w[j];
 }
 
-/* Absolute accelerations: sum_i R_ij (-2 zeta w q' - w^2 q + sum_l R_il f_l) over the building's modes, f of contacts
- * and of the motion. */
-static void accelerations(const SimModel *model, const Motion *motion, const SimSample *s, double out[])
+void sim_worker_motion(const SimWorker *worker, const SimSample *s, FloorMotion *out)
 {
-    double force[FLOORS_MAX] = {0};
+    const SimModel *model = &worker->model;
+    double force[FLOORS_MAX] = {0}, *u_ddot = out->u_ddot;
+    centres(model, s->q, out->u);
+    centres(model, s->v, out->u_dot);
+
+    /* Absolute accelerations: sum_i R_ij (-2 zeta w q' - w^2 q + sum_l R_il f_l) over the building's modes, f of
+     * contacts and of the motion. */
     if (s->plastic)
         model_plastic_forces(model, s->plastic, force);
     for (int j = 0; j < model->n; j++)
-        force[j] += (s->force ? s->force[j] : 0) + motion_force(motion, j, s->t);
-    memset(out, 0, (size_t)model->n * sizeof *out);
+        force[j] += (s->force ? s->force[j] : 0) + motion_force(worker->scene->motion, j, s->t);
+    memset(u_ddot, 0, (size_t)model->n * sizeof *u_ddot);
     for (int i = 0; i < model->nb; i++) {
         const double w = s->omega[i], *row = centre_row(model, i);
         double pull = -w * (2 * model->zeta[i] * s->v[i] + w * s->q[i]);
@@ -302,16 +306,8 @@ static void accelerations(const SimModel *model, const Motion *motion, const Sim
         for (int j = 0; j < model->n; j++)
             pull += row[j] * force[j];
         for (int j = 0; j < model->n; j++)
-            out[j] += row[j] * pull;
+            u_ddot[j] += row[j] * pull;
     }
-}
-
-void sim_worker_motion(const SimWorker *worker, const SimSample *s, FloorMotion *out)
-{
-    const SimModel *model = &worker->model;
-    centres(model, s->q, out->u);
-    centres(model, s->v, out->u_dot);
-    accelerations(model, worker->scene->motion, s, out->u_ddot);
     if (worker->is_joined) {
         floors_from_modes(model, 0, model->nb, s->q, out->core);
         floors_from_modes(model, 0, model->nb, s->v, out->core_dot);
@@ -566,28 +562,23 @@ static Status run_once(SimWorker *w, SceneKind kind, const Design *d, SimResult 
 enum { WALLS_MAX = 16 };
 static const double WALLS_OFF = 0.01;
 
-static Status run_walls(SimWorker *w, SceneKind kind, const Design *d, SimResult *result, Err *err)
-{
-    double *share = w->own_options.core.wall_share;
-    memset(share, 0, sizeof w->own_options.core.wall_share);
-    for (int pass = 0; pass < WALLS_MAX; pass++) {
-        TRY(run_once(w, kind, d, result, err));
-        if (result->outcome != RUN_OK || !(result->forces.core_wall_share_off > WALLS_OFF))
-            break;
-        for (int s = 0; s < result->n_floors && pass + 1 < WALLS_MAX; s++)
-            share[s] =
-                share[s] > 0 ? sqrt(share[s] * result->forces.core_wall_share[s]) : result->forces.core_wall_share[s];
-    }
-    return STATUS_OK;
-}
-
 Status sim_run_built(SimWorker *w, SceneKind kind, const Design *d, SimResult *result, Err *err)
 {
     const PriceOptions *price = &w->scene->options.design.prices;
     const double start = clock_seconds();
     const int has_walls = w->options->core.wall == WALL_EFFECTIVE && SCENES[kind].has & HAS_CORE;
+    double *share = w->own_options.core.wall_share;
     w->is_joined = (SCENES[kind].has & IS_JOINED) != 0;
-    TRY(has_walls ? run_walls(w, kind, d, result, err) : run_once(w, kind, d, result, err));
+    if (has_walls)
+        memset(share, 0, sizeof w->own_options.core.wall_share);
+    for (int pass = 0; pass < (has_walls ? WALLS_MAX : 1); pass++) {
+        TRY(run_once(w, kind, d, result, err));
+        if (result->outcome != RUN_OK || !(result->forces.core_wall_share_off > WALLS_OFF))
+            break;
+        for (int s = 0; s < result->n_floors && has_walls && pass + 1 < WALLS_MAX; s++)
+            share[s] =
+                share[s] > 0 ? sqrt(share[s] * result->forces.core_wall_share[s]) : result->forces.core_wall_share[s];
+    }
     TRY(complete(w, result, err));
     result->mcore_kg = kind == SCENE_NO_CORE ? 0 : w->core.mass_kg;
     if (kind != SCENE_TMD)

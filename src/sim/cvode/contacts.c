@@ -174,6 +174,17 @@ void contacts_settle(Contacts *c, const double w[])
     }
 }
 
+/* By event: the force of floor j at its penetration p [m] and rate [m/s]; none where it does not touch. */
+static ContactForce floor_force(const Contacts *c, int j, const double q[], const double v[], double *p, double *p_dot)
+{
+    const SimModel *model = c->model;
+    const int s = c->side[j];
+    *p = penetration(model, j, s, relative_displacement(model, j, q));
+    *p_dot = s * relative_displacement(model, j, v);
+    return s && *p > 0 ? contact_force(&model->contact[j], model->mass_eff[j], *p, *p_dot, c->v0[j])
+                       : (ContactForce){0};
+}
+
 FloorSet contacts_record(Contacts *c, double t, const double q[], const double v[], double force[])
 {
     const SimModel *model = c->model;
@@ -181,11 +192,8 @@ FloorSet contacts_record(Contacts *c, double t, const double q[], const double v
     FloorSet in_contact = 0;
     for (int j = 0; j < model->n; j++) {
         const int s = c->side[j];
-        const double p = penetration(model, j, s, relative_displacement(model, j, q));
-        const double p_dot = s * relative_displacement(model, j, v);
-        ContactForce f = {0};
-        if (s && p > 0)
-            f = contact_force(&model->contact[j], model->mass_eff[j], p, p_dot, c->v0[j]);
+        double p, p_dot;
+        const ContactForce f = floor_force(c, j, q, v, &p, &p_dot);
         const double loss = (f.raw - f.elastic) * p_dot;
         if (s)
             force_monitor_contact(c->forces, j, half * (c->recorded[j] + f.force), half * (c->recorded_loss[j] + loss),
@@ -203,11 +211,9 @@ void contacts_forces(const Contacts *c, const double q[], const double v[], doub
 {
     const SimModel *model = c->model;
     for (int j = 0; j < model->n; j++) {
-        const int s = model->nc > 0 ? c->side[j] : 0;
-        const double p = penetration(model, j, s, relative_displacement(model, j, q));
-        const double p_dot = s * relative_displacement(model, j, v);
-        const int touches = s && p > 0;
-        force[j] = touches ? -s * contact_force(&model->contact[j], model->mass_eff[j], p, p_dot, c->v0[j]).force : 0;
+        double p = 0, p_dot;
+        const double f = model->nc > 0 ? floor_force(c, j, q, v, &p, &p_dot).force : 0;
+        force[j] = c->side[j] && p > 0 ? -c->side[j] * f : 0;
     }
     for (int e = 0; e < model->n_devices - model->may_lift; e++) {
         double power = 0;

@@ -187,37 +187,6 @@ int ode_error_weights(N_Vector y, N_Vector weight, void *user)
     return 0;
 }
 
-/* Error allowed in every component, as a share `level` of the scale that the motion sets: speed v = PGA/w_1, so that
- *     q_i' : sqrt(M) v      q_i : sqrt(M) v / w_i      energies : M v^2,        M = sum gamma_i^2  [kg] */
-static void set_tolerances(const Ode *o, double level)
-{
-    const SimModel *model = o->model;
-    const int m = model->m;
-    double mass = 0, pga = 0, slowest = HUGE_VAL, *tolerance = ode_values(o->tolerance);
-    for (int i = 0; i < m; i++) {
-        mass += model->gamma[i] * model->gamma[i];
-        slowest = fmin(slowest, fmax(model->omega[i], 1));
-    }
-    for (size_t k = 0; k < o->motion->n; k++) {
-        double force = 0;
-        for (int j = 0; j < o->motion->n_force; j++)
-            force += fabs(o->motion->force[k * (size_t)o->motion->n_force + (size_t)j]);
-        pga = fmax(pga, fabs(o->motion->accel[k]) + force / fmax(mass, 1e-6));
-    }
-    const double speed = (pga > 0 ? pga : 1) / slowest, momentum = sqrt(fmax(mass, 1e-6)) * speed;
-    for (int i = 0; i < m; i++) {
-        tolerance[i] = level * momentum / fmax(model->omega[i], 1);
-        tolerance[m + i] = level * momentum;
-    }
-    for (int i = 2 * m; i < ode_size(o); i++)
-        tolerance[i] = level * momentum * momentum;
-    for (int i = MAT_LIFTED; o->contacts.mat_at && i <= MAT_CONE; i++)
-        tolerance[o->contacts.mat_at + i] = level * mat_of(o)->theta_up;
-    for (int j = 0; model->yields && j < model->n; j++)
-        if (model->yield_n_m[j] > 0)
-            tolerance[storeys_at(o) + j] = level * model->yield_m[j];
-}
-
 int ode_prepare(Ode *o, const double rtol[3])
 {
     const SimModel *model = o->model;
@@ -244,7 +213,34 @@ int ode_prepare(Ode *o, const double rtol[3])
         return -1;
     N_VConst(0, o->y);
     o->rtol = o->options->tolerance > 0 ? o->options->tolerance : rtol[o->options->accuracy];
-    set_tolerances(o, 0.1 * o->rtol);
+
+    /* Error allowed in every component, as a share of the scale that the motion sets: speed v = PGA/w_1, so that
+     *     q_i' : sqrt(M) v      q_i : sqrt(M) v / w_i      energies : M v^2,        M = sum gamma_i^2  [kg] */
+    const int m = model->m;
+    const double level = 0.1 * o->rtol;
+    double mass = 0, pga = 0, slowest = HUGE_VAL, *tolerance = ode_values(o->tolerance);
+    for (int i = 0; i < m; i++) {
+        mass += model->gamma[i] * model->gamma[i];
+        slowest = fmin(slowest, fmax(model->omega[i], 1));
+    }
+    for (size_t k = 0; k < o->motion->n; k++) {
+        double force = 0;
+        for (int j = 0; j < o->motion->n_force; j++)
+            force += fabs(o->motion->force[k * (size_t)o->motion->n_force + (size_t)j]);
+        pga = fmax(pga, fabs(o->motion->accel[k]) + force / fmax(mass, 1e-6));
+    }
+    const double speed = (pga > 0 ? pga : 1) / slowest, momentum = sqrt(fmax(mass, 1e-6)) * speed;
+    for (int i = 0; i < m; i++) {
+        tolerance[i] = level * momentum / fmax(model->omega[i], 1);
+        tolerance[m + i] = level * momentum;
+    }
+    for (int i = 2 * m; i < ode_size(o); i++)
+        tolerance[i] = level * momentum * momentum;
+    for (int i = MAT_LIFTED; o->contacts.mat_at && i <= MAT_CONE; i++)
+        tolerance[o->contacts.mat_at + i] = level * mat_of(o)->theta_up;
+    for (int j = 0; model->yields && j < model->n; j++)
+        if (model->yield_n_m[j] > 0)
+            tolerance[storeys_at(o) + j] = level * model->yield_m[j];
     return 0;
 }
 
@@ -453,26 +449,6 @@ static double unseen_closing(Ode *o, int j, double t_before, double t, const Flo
     return change_of_sign(o, j, side, 0, t_before, top);
 }
 
-/* A gap that closes and opens again inside one step changes no sign that a root is found by. Goes back to the first
- * such closing, if any: 1, and found[] says which floor. */
-static int go_back(Ode *o, double t_before, double *t, const Floors *from, const Floors *to, int found[])
-{
-    double first = HUGE_VAL;
-    int floor = -1;
-    for (int j = 0; j < ode_n_roots(o); j++) {
-        const double closing = unseen_closing(o, j, t_before, *t, from, to);
-        if (closing < first) {
-            first = closing;
-            floor = j;
-        }
-    }
-    if (floor < 0 || o->solver->interpolate(o, first, o->y))
-        return 0;
-    found[floor] = 1;
-    *t = first;
-    return 1;
-}
-
 /* From *t to t_stop. */
 static RunOutcome cross(Ode *o, double *t, double t_stop)
 {
@@ -491,11 +467,22 @@ static RunOutcome cross(Ode *o, double *t, double t_stop)
         const int flag = o->solver->step(o, t_stop, t);
         if (flag < 0) /* it has tried again with shorter steps before it says so */
             return o->finite ? RUN_ENGINE_FAILED : RUN_NOT_FINITE;
-        int found[2 * FLOORS_MAX] = {0};
+
+        /* A gap that closes and opens again inside one step changes no sign that a root is found by: back to the first
+         * such closing, if any. */
+        int found[2 * FLOORS_MAX] = {0}, floor = -1;
+        double first = HUGE_VAL;
         floors_now(o, &to);
-        if (go_back(o, t_before, t, &from, &to, found))
+        for (int j = 0; j < ode_n_roots(o); j++) {
+            const double closing = unseen_closing(o, j, t_before, *t, &from, &to);
+            floor = closing < first ? j : floor;
+            first = fmin(closing, first);
+        }
+        if (floor >= 0 && o->solver->interpolate(o, first, o->y) == 0) {
+            found[floor] = 1;
+            *t = first;
             floors_now(o, &to);
-        else if (flag == ODE_ROOT)
+        } else if (flag == ODE_ROOT)
             o->solver->found(o, found);
         from = to;
         peak_monitor_break(&o->account.peaks, 1);
