@@ -35,6 +35,17 @@
 /* What the calls of a test say of their faults; it begins empty. */
 static Err err __attribute__((unused));
 
+/* What a block of a test owns is released where the block ends, the last first; after a failed assertion it is not.
+ * OWNED(run_free) Run run = run_in("a"); FREED char *text = text_of(path); for JSON there is json_auto_t of jansson. */
+#define OWNED(release) __attribute__((cleanup(release)))
+#define FREED          OWNED(free_pointed)
+static inline void free_pointed(void *pointer)
+{
+    void *block;
+    memcpy(&block, pointer, sizeof block);
+    free(block);
+}
+
 /* A test puts itself on the list of its file, in the order in which they stand: TEST(what_is_so) { ... } */
 enum { TESTS_MAX = 128 };
 static struct CMUnitTest all_tests[TESTS_MAX] __attribute__((unused));

@@ -85,11 +85,10 @@ static inline void forget(Said *said)
 /* Runs, and expects that exit status and that text on standard error. */
 static inline void expect(int code, const char *message, const char *arguments)
 {
-    Said s;
+    OWNED(forget) Said s;
     run(&s, "%s", arguments);
     if (s.code != code || !strstr(s.err, message))
         fail_msg("imtet %s\n  exit %d (wanted %d), said: %s  wanted: %s", arguments, s.code, code, s.err, message);
-    forget(&s);
 }
 
 /* What it prints, with status 0; to be freed. */
@@ -111,18 +110,15 @@ __attribute__((format(printf, 1, 2))) static inline char *output_of(const char *
 /* Runs, and expects the words on standard output. */
 static inline void expect_output(const char *words, const char *arguments)
 {
-    char *text = output_of("%s", arguments);
+    FREED char *text = output_of("%s", arguments);
     if (!strstr(text, words))
         fail_msg("imtet %s\n  said: %s  wanted: %s", arguments, text, words);
-    free(text);
 }
 
 static inline void assert_same_output(const char *arguments, const char *others)
 {
-    char *a = output_of("%s", arguments), *b = output_of("%s", others);
+    FREED char *a = output_of("%s", arguments), *b = output_of("%s", others);
     assert_string_equal(a, b);
-    free(a);
-    free(b);
 }
 
 /* Every evaluation of a run, as `imtet export --all` writes them; to be freed. */
@@ -154,11 +150,10 @@ __attribute__((format(printf, 1, 2))) static inline json_t *json_of(const char *
     va_start(list, format);
     vsnprintf(arguments, sizeof arguments, format, list);
     va_end(list);
-    char *text = output_of("%s", arguments);
+    FREED char *text = output_of("%s", arguments);
     json_t *o = json_loads(text, 0, &error);
     if (!o)
         fail_msg("imtet %s: %s", arguments, error.text);
-    free(text);
     return o;
 }
 
@@ -179,21 +174,19 @@ static inline char *in_place(const char *name)
 
 static inline void write_in_place(const char *name, const char *text)
 {
-    char *path = in_place(name);
+    FREED char *path = in_place(name);
     FILE *f = fopen(path, "w");
     assert_non_null(f);
     assert_at_most(0, fputs(text, f));
     assert_int_equal(fclose(f), 0);
-    free(path);
 }
 
 /* Storeys of a building in the folder @/name: lines of height, mass and stiffness. */
 static inline void write_storeys_in_place(const char *name, const char *rows)
 {
     char file[64], text[400];
-    char *folder = in_place(name);
+    FREED char *folder = in_place(name);
     mkdir(folder, 0777);
-    free(folder);
     snprintf(file, sizeof file, "%s/storeys.csv", name);
     snprintf(text, sizeof text, "height_m,mass_kg,stiffness_n_m\n%s", rows);
     write_in_place(file, text);
@@ -218,27 +211,23 @@ static inline char *read_in_place(const char *name)
 
 static inline void expect_file(const char *name, const char *words)
 {
-    char *text = read_in_place(name);
+    FREED char *text = read_in_place(name);
     if (!strstr(text, words))
         fail_msg("%s: %.2000s\n  wanted: %s", name, text, words);
-    free(text);
 }
 
 static inline void assert_same_files(const char *name, const char *other)
 {
-    char *a = read_in_place(name), *b = read_in_place(other);
+    FREED char *a = read_in_place(name), *b = read_in_place(other);
     assert_string_equal(a, b);
-    free(a);
-    free(b);
 }
 
 /* A CSV file with a header, in the test's own folder; released by table_free. */
 static inline Table table_of(const char *name)
 {
     Table t;
-    char *path = in_place(name);
+    FREED char *path = in_place(name);
     CHECK_OK(table_read(&t, path, 1, &err), &err);
-    free(path);
     return t;
 }
 

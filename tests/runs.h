@@ -80,10 +80,9 @@ static inline char *json_export(const char *folder)
     char *text = NULL;
     size_t length;
     FILE *f = open_memstream(&text, &length);
-    Run run;
+    OWNED(run_free) Run run;
     CHECK_OK(run_read(&run, folder, &err), &err);
     CHECK_OK(export_json(f, &run, &err), &err);
-    run_free(&run);
     fclose(f);
     char *name = strstr(text, OUT);
     assert_non_null(name);
@@ -98,10 +97,8 @@ static inline void assert_same_run(const char *a, const char *b)
     snprintf(name[0], sizeof name[0], "%s/front.csv", a);
     snprintf(name[1], sizeof name[1], "%s/front.csv", b);
     assert_same_files(name[0], name[1]);
-    char *first = json_export(path_of(a, path[0])), *second = json_export(path_of(b, path[1]));
+    FREED char *first = json_export(path_of(a, path[0])), *second = json_export(path_of(b, path[1]));
     assert_string_equal(first, second);
-    free(first);
-    free(second);
 }
 
 /* `imtet optimize` in the background, what it says in @/said. */

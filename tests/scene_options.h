@@ -31,10 +31,9 @@ static inline void six_floors(BuildingOptions *building, CoreOptions *core)
 /* With the record read. */
 static inline Status scenario_of(Scenario *w, const SceneOptions *o, const MotionOptions *record, Err *why)
 {
-    Motion read;
+    OWNED(motion_free) Motion read = {0};
     TRY(motion_open(&read, record, why));
     const Status status = scenario_open(w, o, record, &read, why);
-    motion_free(&read);
     return status;
 }
 
@@ -66,7 +65,7 @@ static inline Status known_settings(Settings *s, const char *anchors, Err *why)
 static inline Status run_under(const SceneOptions *o, const MotionOptions *record, SceneKind kind, const double x[],
                                const LinearDevice *device, SimResult *r, Err *why)
 {
-    Scenario w = {0};
+    OWNED(scenario_close) Scenario w = {0};
     SimWorker *worker = NULL;
     TRY(scenario_of(&w, o, record, why));
     Status status = sim_worker_create(&worker, w.scene, why);
@@ -74,7 +73,6 @@ static inline Status run_under(const SceneOptions *o, const MotionOptions *recor
         sim_worker_device(worker, device);
     THEN(status, sim_run(worker, kind, x, r, why));
     sim_worker_free(worker);
-    scenario_close(&w);
     return status;
 }
 

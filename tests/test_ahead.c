@@ -149,7 +149,7 @@ TEST(a_search_that_is_interrupted_a_hundred_times_asks_the_same)
             tell(&again, s, &out, random_below(&r, MIN_OF(out.n, 10)));
         if (random_below(&r, 3) > 0)
             continue;
-        EvaluationTable rows = evaluation_table(VAR, OBJ, 0);
+        OWNED(evaluation_table_free) EvaluationTable rows = evaluation_table(VAR, OBJ, 0);
         const SearchView v = search_look(s);
         for (size_t i = 0; i < v.all->n; i++) {
             Evaluation e = {.kind = (EvaluationKind)v.all->kind[i],
@@ -164,7 +164,6 @@ TEST(a_search_that_is_interrupted_a_hundred_times_asks_the_same)
             search_from(&again, &(SearchStart){.n = rows.n, .row = rows.row, .state = v.state, .n_state = v.n_state});
         search_free(s);
         s = next;
-        evaluation_table_free(&rows);
         Out told = out, open = {0};
         assert_int_equal(ask_all(&again, s, &open), 1);
         for (size_t i = open.n; i-- > 0;) { /* those that were told before it was interrupted */
@@ -208,10 +207,9 @@ static long failed_where_one_waits(const char *name, int tenths, const char *mor
     free(output_of("optimize @/uneven.ini --out @/%s --max-evals 60 --set 'problem.command=sh tests/worker.sh waits "
                    "@/%s.ids 38 %d' %s",
                    name, name, tenths, more));
-    json_t *o = json_of("status @/%s --json", name);
+    json_auto_t *o = json_of("status @/%s --json", name);
     const long failed = (long)number(o, "failed");
     assert_same_number(number(o, "simulated"), 60);
-    json_decref(o);
     return failed;
 }
 

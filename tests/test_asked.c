@@ -16,7 +16,7 @@ static void write_study(const char *name, const char *mode)
 TEST(check_asks_the_worker_one_design_and_says_its_answer_and_the_time_of_the_study)
 {
     write_study("kinds.ini", "bounded");
-    json_t *o = json_of("check @/kinds.ini --json");
+    json_auto_t *o = json_of("check @/kinds.ini --json");
     const json_t *worker = json_object_get(o, "worker"), *study = json_object_get(o, "study");
     assert_true(number(worker, "x1") == 10.0);
     assert_true(number(worker, "f1") == 10.0);
@@ -26,10 +26,8 @@ TEST(check_asks_the_worker_one_design_and_says_its_answer_and_the_time_of_the_st
     assert_string_equal(json_string_value(json_object_get(worker, "outcome")), "ok");
     const double each = number(study, "simulation_s"), search = number(study, "search_s");
     assert_true(each > 0.0 && fabs(number(study, "seconds") - (30 * each / 2 + search)) < 1e-12);
-    json_decref(o);
-    char *asked = read_in_place("asked");
+    FREED char *asked = read_in_place("asked");
     assert_string_equal(asked, "1\n1\n"); /* quick: once more, without the start of the process */
-    free(asked);
 }
 
 TEST(simulate_gives_what_the_run_has_of_every_design_of_its_front)
@@ -37,8 +35,8 @@ TEST(simulate_gives_what_the_run_has_of_every_design_of_its_front)
     write_study("kinds.ini", "bounded");
     free(output_of("optimize @/kinds.ini --out @/kinds"));
     free(output_of("simulate @/kinds.ini --design @/kinds/front.csv --csv @/again.csv"));
-    Run h = run_in("kinds");
-    Table t;
+    OWNED(run_free) Run h = run_in("kinds");
+    OWNED(table_free) Table t;
     char csv[PATH_MAX];
     CHECK_OK(table_read(&t, path_of("again.csv", csv), TABLE_WORDS, &err), &err);
     assert_int_equal(t.n_rows, h.n_front);
@@ -54,8 +52,6 @@ TEST(simulate_gives_what_the_run_has_of_every_design_of_its_front)
             assert_true(value == (k < 2 ? e->f[k] : e->extra[k - 2]));
         }
     }
-    table_free(&t);
-    run_free(&h);
 }
 
 TEST(simulate_takes_one_design_of_a_run_or_a_file_and_refuses_what_only_a_tower_has)

@@ -200,21 +200,20 @@ TEST(asked_in_any_portions_the_designs_and_the_front_are_those_of_optimize)
 {
     static const size_t PORTIONS[] = {1, 8, 64};
     for (size_t k = 0; k < N_OF(EXERCISES); k++) {
-        Run run;
+        OWNED(run_free) Run run;
         optimize(&EXERCISES[k], &run);
         for (size_t i = 0; i < N_OF(PORTIONS); i++) {
             imtet_search *s = drive(&EXERCISES[k], PORTIONS[i], NULL);
             assert_same_designs(s, &EXERCISES[k], &run);
             imtet_search_free(&s);
         }
-        run_free(&run);
     }
 }
 
 TEST(told_in_any_order_saved_and_loaded_anywhere_they_are_the_same)
 {
     for (size_t k = 0; k < N_OF(EXERCISES); k++) {
-        Run run;
+        OWNED(run_free) Run run;
         optimize(&EXERCISES[k], &run);
         for (uint32_t seed = 0; seed < (SANITIZED ? 2 : 5); seed++) {
             Random dice = random_stream(seed, RANDOM_TEST, 0, 0);
@@ -222,7 +221,6 @@ TEST(told_in_any_order_saved_and_loaded_anywhere_they_are_the_same)
             assert_same_designs(s, &EXERCISES[k], &run);
             imtet_search_free(&s);
         }
-        run_free(&run);
     }
 }
 

@@ -41,14 +41,13 @@ TEST(scenes_have_as_many_impacts_as_their_names_say)
     Ground g;
     ground_open(&g);
     for (int k = 0; k < N_BENCH_KINDS; k++) {
-        BenchCase bench_case = {0};
+        OWNED(bench_case_close) BenchCase bench_case = {0};
         static TimedRun o;
         CHECK_OK(bench_case_open(&bench_case, bench_kind(k), &g.s, &g.m, 1, &err), &err);
         CHECK_OK(timed_run(&bench_case, ENGINE_FAST, ACCURACY_STANDARD, 0, &o, &err), &err);
         print_message("%s: %ld impacts\n", bench_case.kind->name, o.result.impacts);
         assert_int_equal(o.result.outcome, RUN_OK);
         assert_true(o.result.impacts >= LEAST[k] && o.result.impacts <= MOST[k]);
-        bench_case_close(&bench_case);
     }
     motion_free(&g.m);
 }
@@ -56,7 +55,7 @@ TEST(scenes_have_as_many_impacts_as_their_names_say)
 TEST(an_error_is_zero_against_itself_and_first_order_in_a_change)
 {
     static TimedRun o, changed;
-    BenchCase bench_case = {0};
+    OWNED(bench_case_close) BenchCase bench_case = {0};
     Ground g;
     ground_open(&g);
     CHECK_OK(bench_case_open(&bench_case, bench_kind(2), &g.s, &g.m, 1, &err), &err);
@@ -71,17 +70,16 @@ TEST(an_error_is_zero_against_itself_and_first_order_in_a_change)
     assert_close(some.objectives, 1e-3, 1e-9);
     assert_close(some.state, 1e-2, 1e-9);
     assert_close(some.first_s, 1e-3, 1e-9);
-    bench_case_close(&bench_case);
     motion_free(&g.m);
 }
 
 TEST(a_sweep_has_a_row_for_every_setting_and_a_known_floor)
 {
     const SweepPlan plan = {1u << ENGINE_FAST | 1u << ENGINE_NEWMARK, 0.05};
-    Sweep sweep = {0};
-    BenchCase bench_case = {0};
+    OWNED(sweep_free) Sweep sweep = {0};
+    OWNED(bench_case_close) BenchCase bench_case = {0};
     Ground g;
-    char *csv = NULL;
+    FREED char *csv = NULL;
     size_t size;
     ground_open(&g);
     six_floors(&g.s.building, &g.s.core);
@@ -102,9 +100,6 @@ TEST(a_sweep_has_a_row_for_every_setting_and_a_known_floor)
         lines += *c == '\n';
     assert_int_equal(lines, sweep.n + 1);
     assert_int_equal(strncmp(csv, "case,engine,tolerance,seconds,error_objectives", 45), 0);
-    free(csv);
-    sweep_free(&sweep);
-    bench_case_close(&bench_case);
     motion_free(&g.m);
 }
 
@@ -266,8 +261,8 @@ TEST(a_search_makes_as_many_evaluations_as_it_may_and_betters_its_first_sample)
         which++;
     for (int i = 0; i < 2; i++) {
         double first = INFINITY, last = INFINITY;
-        Problem p;
-        Course c;
+        OWNED(problem_close) Problem p;
+        OWNED(course_free) Course c;
         CHECK_OK(family_open(&p, which, &err), &err);
         CHECK_OK(course_create(&c, 200, p.n_obj, &err), &err);
         CHECK_OK(search_course(&s, &p, i ? SURROGATE_OFF : SURROGATE_ON, &c, &err), &err);
@@ -278,8 +273,6 @@ TEST(a_search_makes_as_many_evaluations_as_it_may_and_betters_its_first_sample)
             assert_true(j == 0 || c.cpu_s[j] >= c.cpu_s[j - 1]);
         }
         assert_less(last, first);
-        course_free(&c);
-        problem_close(&p);
     }
 }
 
@@ -287,7 +280,7 @@ TEST(a_search_makes_as_many_evaluations_as_it_may_and_betters_its_first_sample)
 static void loop_simulations(double error_max, size_t found[4], double volume[2])
 {
     Settings s;
-    char *text;
+    FREED char *text;
     size_t size, n = 0;
     settings_defaults(&s);
     s.problem.kind = PROBLEM_EXTERNAL;
@@ -309,7 +302,6 @@ static void loop_simulations(double error_max, size_t found[4], double volume[2]
         found[3] = simulations;
     }
     assert_true(n > 6);
-    free(text);
 }
 
 TEST(the_loop_simulates_what_fails_the_error_test_and_the_search_as_many_from_the_same_sample)

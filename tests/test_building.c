@@ -11,10 +11,9 @@
 static BuildingOptions folder_of(const char *name)
 {
     BuildingOptions o = scene_defaults().building;
-    char *path = in_place(name);
+    FREED char *path = in_place(name);
     mkdir(path, 0777);
     snprintf(o.model, sizeof o.model, "%s", path);
-    free(path);
     return o;
 }
 
@@ -73,16 +72,14 @@ static double largest_difference(int n, const double A[], const double B[])
 TEST(the_20_storey_frame_condenses_to_the_built_in_matrices)
 {
     BuildingOptions o = scene_defaults().building;
-    Building built_in = load(&o);
+    OWNED(building_free) Building built_in = load(&o);
     snprintf(o.model, sizeof o.model, "configs/sac20/frame");
-    Building frame = load(&o);
+    OWNED(building_free) Building frame = load(&o);
     assert_int_equal(frame.n, 20);
     assert_less(largest_difference(20, frame.K, built_in.K), 1e-9);
     assert_less(largest_difference(20, frame.M, built_in.M), 1e-9);
     for (int j = 0; j < 20; j++)
         assert_close(frame.storey_m[j], j == 0 ? 5.4864 : 3.9624, 1e-9);
-    building_free(&frame);
-    building_free(&built_in);
 }
 
 /* ---- frames --------------------------------------------------------------------------------------------------- */
@@ -117,7 +114,7 @@ TEST(a_column_deflects_as_a_cantilever)
     const double kGA = 2.1e11 / 2.5 * 5e-4;
     for (int shears = 0; shears < 2; shears++) {
         const BuildingOptions o = write_column("column", 2, shears ? "5e-4" : "0");
-        Building b = load(&o);
+        OWNED(building_free) Building b = load(&o);
         double u[N];
         assert_int_equal(b.n, N);
         for (int at = 0; at < N; at++) {
@@ -126,19 +123,17 @@ TEST(a_column_deflects_as_a_cantilever)
             assert_close(u[at], 1e4 * a * a * a / (3 * EI) + shear, 1e-8);
             assert_close(u[N - 1], 1e4 * a * a / (6 * EI) * (3 * L - a) + shear, 1e-8);
         }
-        building_free(&b);
     }
 }
 
 TEST(a_column_of_consistent_mass_vibrates_as_a_cantilever)
 {
     const BuildingOptions o = write_column("column", 1, "0");
-    Building b = load(&o);
+    OWNED(building_free) Building b = load(&o);
     const double L = STOREY * N, beta_l[] = {1.875104069, 4.694091133, 7.854757438}; /* cos x cosh x = -1 */
     for (int i = 0; i < 3; i++)
         assert_close(b.omega[i], pow(beta_l[i] / L, 2) * sqrt(EI / PER_M), 3e-3);
     assert_close(b.omega[0], pow(beta_l[0] / L, 2) * sqrt(EI / PER_M), 1e-5);
-    building_free(&b);
 }
 
 /* A portal 4 m high and 6 m wide; ends of the columns, of the beam, as given. */
@@ -185,11 +180,9 @@ TEST(a_portal_frame_has_its_textbook_stiffness)
 TEST(a_hinge_at_the_base_and_a_pin_in_the_column_are_the_same)
 {
     BuildingOptions by_base = write_portal("by_base", 10, "0", "0,0"), by_pin = write_portal("by_pin", 10, "1", "1,0");
-    Building a = load(&by_base), b = load(&by_pin);
+    OWNED(building_free) Building a = load(&by_base), b = load(&by_pin);
     assert_close(a.K[0], 2 * 3 * 2e11 * 1e-4 / 64, 1e-4);
     assert_close(b.K[0], a.K[0], 1e-9);
-    building_free(&a);
-    building_free(&b);
 }
 
 TEST(a_mechanism_is_refused_with_its_node)
@@ -214,14 +207,12 @@ TEST(tied_nodes_move_together)
 {
     BuildingOptions o = write_portal("tied", 1e-4, "1", "0,0");
     write_file(&o, "sections.csv", "section,A_m2,I_m4,E_pa\ncolumn,50,1e-4,2e11\nbeam,1e-9,1e-4,2e11\n");
-    Building rigid = load(&o);
+    OWNED(building_free) Building rigid = load(&o);
     o.rigid_floors = SWITCH_OFF;
     write_file(&o, "ties.csv", "node,same_as,x\nC,D,1\n");
-    Building tied = load(&o);
+    OWNED(building_free) Building tied = load(&o);
     assert_close(tied.K[0], rigid.K[0], 1e-12);
     assert_close(tied.M[0], rigid.M[0], 1e-12);
-    building_free(&tied);
-    building_free(&rigid);
 }
 
 TEST(faults_of_a_frame_name_file_line_and_what_to_do)
@@ -276,13 +267,12 @@ TEST(storeys_that_shear_have_the_frequencies_of_a_chain)
             snprintf(rows + strlen(rows), sizeof rows - strlen(rows), form ? "%g;%g;%g\n" : "%g,%g,%g\n", 3.0 + 0.5 * j,
                      form ? m / 1e3 : m, form ? k / 1e3 : k);
         write_file(&o, "storeys.csv", "%s\n%s", HEADS[form], rows);
-        Building b = load(&o);
+        OWNED(building_free) Building b = load(&o);
         assert_int_equal(b.n, N);
         for (int i = 0; i < N; i++) {
             assert_close(b.omega[i], 2 * sqrt(k / m) * sin((2 * i + 1) * M_PI / (2 * (2 * N + 1))), 1e-10);
             assert_close(b.storey_m[i], 3 + 0.5 * i, 1e-12);
         }
-        building_free(&b);
     }
 }
 
@@ -298,11 +288,10 @@ TEST(storeys_that_bend_and_shear_deflect_as_timoshenkos_cantilever)
             else
                 snprintf(rows + strlen(rows), sizeof rows - strlen(rows), "%g,2e5,%g\n", h, EI_building);
         write_file(&o, "storeys.csv", "height_m,mass_kg,%sbending_n_m2\n%s", shears ? "stiffness_n_m," : "", rows);
-        Building b = load(&o);
+        OWNED(building_free) Building b = load(&o);
         double u[N];
         deflect(&b, N - 1, 1e6, u);
         assert_close(u[N - 1], 1e6 * (L * L * L / (3 * EI_building) + (shears ? N / k : 0)), 1e-9);
-        building_free(&b);
     }
 }
 
@@ -376,9 +365,8 @@ TEST(p_delta_of_one_storey_is_the_inverted_pendulum)
     const double k = 2e6, m = 1e5, h = 4;
     write_file(&o, "storeys.csv", "height_m,mass_kg,stiffness_n_m\n%g,%g,%g\n", h, m, k);
     o.p_delta = SWITCH_ON;
-    Building b = load(&o);
+    OWNED(building_free) Building b = load(&o);
     assert_close(b.omega[0] * b.omega[0], k / m - 9.81 / h, 1e-12);
-    building_free(&b);
     write_file(&o, "storeys.csv", "height_m,mass_kg,stiffness_n_m\n%g,%g,%g\n", h, m, 0.999 * m * 9.81 / h);
     expect_refusal_of(&o, "buckles under its own weight");
 }
@@ -393,12 +381,11 @@ static int stands(int n, double weight, double bending)
                  j < n - 1 ? 1e-6 : weight / 9.81, bending);
     write_file(&o, "storeys.csv", "height_m,mass_kg,bending_n_m2\n%s", rows);
     o.p_delta = SWITCH_ON;
-    Building b;
+    OWNED(building_free) Building b;
     err = (Err){0};
     const int standing = building_load(&b, &o, &err) == STATUS_OK;
     if (!standing)
         assert_non_null(strstr(err.text, "buckles"));
-    building_free(&b);
     return standing;
 }
 
@@ -427,13 +414,12 @@ TEST(rayleigh_damping_goes_through_its_two_modes)
     o.damping_model = DAMPING_RAYLEIGH;
     o.damping = LIST_OF(0.02);
     o.rayleigh_modes = LIST_OF(1, 4);
-    Building b = load(&o);
+    OWNED(building_free) Building b = load(&o);
     assert_close(b.zeta[0], 0.02, 1e-12);
     assert_close(b.zeta[3], 0.02, 1e-12);
     const double w1 = b.omega[0], w4 = b.omega[3];
     for (int i = 0; i < 20; i++)
         assert_close(b.zeta[i], 0.02 * (w1 * w4 / b.omega[i] + b.omega[i]) / (w1 + w4), 1e-12);
-    building_free(&b);
     o.rayleigh_modes = LIST_OF(1, 21);
     expect_refusal_of(&o, "21 is none of the 20 modes");
     o.rayleigh_modes = LIST_OF(1, 2.5);
@@ -446,9 +432,8 @@ TEST(a_list_of_damping_gives_each_mode_its_ratio)
 {
     BuildingOptions o = scene_defaults().building;
     o.damping = LIST_OF(0.01, 0.02, 0.05);
-    Building b = load(&o);
+    OWNED(building_free) Building b = load(&o);
     assert_true(b.zeta[0] == 0.01 && b.zeta[1] == 0.02 && b.zeta[2] == 0.05 && b.zeta[19] == 0.05);
-    building_free(&b);
     o.damping.n = 21;
     expect_refusal_of(&o, "has 21 ratios; the building has 20 modes");
 }
@@ -474,15 +459,13 @@ TEST(a_building_of_the_most_floors_is_simulated_alike_by_two_engines)
                        "@/tall/push.csv --set motion.stretch=1 --set sim.duration_s=0.15 --set sim.accuracy=fine --set "
                        "sim.engine=%s --json --contacts @/contacts.csv",
                        i ? "cvode" : "fast");
-        Table contacts;
-        char *path = in_place("contacts.csv");
+        OWNED(table_free) Table contacts;
+        FREED char *path = in_place("contacts.csv");
         double highest = 0;
         CHECK_OK(table_read(&contacts, path, 1, &err), &err);
         for (size_t k = 0; k < contacts.n_rows; k++)
             highest = fmax(highest, contacts.values[k * contacts.n_cols + (size_t)table_column(&contacts, "floor")]);
         assert_same_number(highest, FLOORS_MAX);
-        table_free(&contacts);
-        free(path);
     }
     assert_at_most(10, number(r[0], "impacts"));
     assert_int_equal((int)number(r[0], "impacts"), (int)number(r[1], "impacts"));
@@ -501,12 +484,12 @@ TEST(the_full_model_of_the_20_storey_frame_has_the_frequencies_of_its_published_
 {
     static double omega[FULL], phi[FULL * FULL];
     BuildingOptions o = scene_defaults().building;
-    Table K, M;
+    OWNED(table_free) Table K, M;
     CHECK_OK(table_read(&K, "configs/sac20/full106/K.csv", 0, &err), &err);
     CHECK_OK(table_read(&M, "configs/sac20/full106/M.csv", 0, &err), &err);
     CHECK_OK(linalg_modes(FULL, K.values, M.values, omega, phi, &err), &err);
     o.modes = ALL_MODES;
-    Building b = load(&o);
+    OWNED(building_free) Building b = load(&o);
     assert_int_equal(b.n, 20);
     assert_int_equal(b.model.n, FULL);
     for (int i = 0; i < FULL; i++)
@@ -516,9 +499,6 @@ TEST(the_full_model_of_the_20_storey_frame_has_the_frequencies_of_its_published_
             assert_less(fabs(b.model.K[j * FULL + k] - K.values[j * FULL + k]), 1e-9 * K.values[0]);
             assert_less(fabs(b.model.M[j * FULL + k] - M.values[j * FULL + k]), 1e-9 * M.values[0]);
         }
-    table_free(&K);
-    table_free(&M);
-    building_free(&b);
 }
 
 TEST(a_frame_of_which_no_displacement_is_named_keeps_all_that_have_mass)
@@ -564,32 +544,29 @@ TEST(craig_bampton_converges_to_the_full_model_from_above)
 {
     BuildingOptions o = scene_defaults().building;
     o.modes = ALL_MODES;
-    Building full = load(&o);
+    OWNED(building_free) Building full = load(&o);
     double last = HUGE_VAL;
     for (o.modes = 4; o.modes < FULL - 20; o.modes *= 2) {
-        Building b = load(&o);
+        OWNED(building_free) Building b = load(&o);
         assert_int_equal(b.model.n, 20 + o.modes + 1);
         for (int i = 0; i < b.model.n; i++) /* Rayleigh-Ritz */
             assert_less(full.model.omega[i] * (1 - 1e-9), b.model.omega[i]);
         const double missed = missed_frequencies(&b, &full);
         assert_less(missed, last);
         last = missed;
-        building_free(&b);
     }
     assert_less(last, 1e-4);
     o.modes = FULL - 21;
-    Building b = load(&o);
+    OWNED(building_free) Building b = load(&o);
     for (int i = 0; i < FULL; i++) /* one mode is missing, and the shape in its place is it */
         assert_close(b.model.omega[i], full.model.omega[i], 1e-7);
-    building_free(&b);
-    building_free(&full);
 }
 
 TEST(whatever_is_kept_the_ground_moves_every_floor_as_one)
 {
     BuildingOptions o = scene_defaults().building;
     for (o.modes = 0; o.modes <= 128; o.modes = 2 * o.modes + 4) {
-        Building b = load(&o);
+        OWNED(building_free) Building b = load(&o);
         const BuildingModel *m = &b.model;
         for (int j = 0; j < b.n; j++) {
             double one = 0;
@@ -598,7 +575,6 @@ TEST(whatever_is_kept_the_ground_moves_every_floor_as_one)
             assert_close(one, 1, 1e-9);
         }
         assert_close(building_mass(&b), 5.506e6, 1e-3);
-        building_free(&b);
     }
 }
 
@@ -609,12 +585,11 @@ TEST(the_ground_moves_mass_between_the_floors_as_it_does_in_the_full_model)
     double mass[2] = {0}, swing[2];
     for (int i = 0; i < 2; i++) {
         o.modes = i ? ALL_MODES : 0;
-        Building b = load(&o);
+        OWNED(building_free) Building b = load(&o);
         const BuildingModel *m = &b.model;
         assert_true(i || m->n == N + 1);
         mass[i] = building_mass(&b);
         swing[i] = m->phi[(N - 1) * m->n] * m->gamma[0];
-        building_free(&b);
     }
     assert_close(mass[0], mass[1], 1e-9);
     assert_close(swing[0], swing[1], 1e-3);
@@ -675,12 +650,11 @@ TEST(a_portal_of_heavy_columns_responds_as_its_full_model_in_two_engines)
     }
     assert_close(shear[0], shear[1], 0.02);
     char *said = output_of("building @/columns"), wanted[64];
-    json_t *all = json_of("building @/columns --json");
+    json_auto_t *all = json_of("building @/columns --json");
     const double floor = number(json_array_get(json_object_get(all, "floors"), 0), "mass_kg");
     snprintf(wanted, sizeof wanted, "%.6g t of it are between the floors\n", 1e-3 * (mass - floor));
     assert_true(floor > 1666.7 * 6 && floor < 0.8 * mass);
     assert_non_null(strstr(said, wanted));
-    json_decref(all);
     free(said);
 }
 
@@ -688,7 +662,7 @@ TEST(vertical_modes_of_the_full_model_resemble_none_of_the_floors)
 {
     BuildingOptions o = scene_defaults().building;
     o.modes = ALL_MODES;
-    Building b = load(&o);
+    OWNED(building_free) Building b = load(&o);
     int seen[20] = {0};
     for (int i = 0, next = 0; i < 12; i++) { /* ten horizontal, the sixth and the eighth are vertical */
         const int vertical = i == 5 || i == 7;
@@ -700,7 +674,6 @@ TEST(vertical_modes_of_the_full_model_resemble_none_of_the_floors)
             seen[b.model.like[i]]++;
     for (int j = 0; j < 20; j++)
         assert_at_most(1, seen[j]);
-    building_free(&b);
 }
 
 TEST(p_delta_and_damping_reach_the_full_model)
@@ -736,9 +709,9 @@ TEST(a_floor_that_one_node_stands_for_is_warned_of_where_periods_move)
                "5,b,c,beam\n");
     write_file(&o, "masses.csv", "node,mass_kg\na,50000\nb,10000\nc,20000\n");
     o.rigid_floors = SWITCH_OFF;
-    Building one = load(&o);
+    OWNED(building_free) Building one = load(&o);
     o.modes = ALL_MODES;
-    Building full = load(&o);
+    OWNED(building_free) Building full = load(&o);
     const double is = 2 * M_PI / one.model.omega[0], should = 2 * M_PI / full.model.omega[0];
     assert_true(fabs(is / should - 1) > 0.01);
     char wanted[128], command[256];
@@ -755,13 +728,9 @@ TEST(a_floor_that_one_node_stands_for_is_warned_of_where_periods_move)
         assert_false(strstr(s.err, "one node") || strstr(s.out, "one node"));
         forget(&s);
     }
-    char *text = output_of("building @/soft --json --set building.rigid_floors=off --set building.modes=100");
-    json_t *all = json_loads(text, 0, NULL);
+    FREED char *text = output_of("building @/soft --json --set building.rigid_floors=off --set building.modes=100");
+    json_auto_t *all = json_loads(text, 0, NULL);
     assert_close(number(json_array_get(json_object_get(all, "modes"), 0), "hz"), 1 / should, 1e-9);
-    json_decref(all);
-    free(text);
-    building_free(&one);
-    building_free(&full);
 }
 
 TEST(a_built_in_tower_refuses_other_heights)
@@ -813,9 +782,9 @@ TEST(the_full_model_is_simulated_alike_by_two_engines)
 
 TEST(a_building_is_summed_up_and_drawn)
 {
-    json_t *o = json_of("building configs/sac20/frame %s--json", has_browser() ? "--svg @/frame.svg " : "");
+    json_auto_t *o = json_of("building configs/sac20/frame %s--json", has_browser() ? "--svg @/frame.svg " : "");
     const BuildingOptions options = scene_defaults().building;
-    Building b = load(&options);
+    OWNED(building_free) Building b = load(&options);
     assert_int_equal((int)number(o, "nodes"), 180);
     assert_int_equal((int)number(o, "elements"), 284);
     const json_t *top = json_array_get(json_object_get(o, "floors"), 19);
@@ -828,15 +797,12 @@ TEST(a_building_is_summed_up_and_drawn)
         shares += number(json_array_get(json_object_get(o, "modes"), i), "mass_share");
     assert_close(shares, 1, 1e-9);
     if (has_browser()) {
-        char *svg = read_in_place("frame.svg");
+        FREED char *svg = read_in_place("frame.svg");
         assert_int_equal(count(svg, "<title>floor "), 20 * 6);
         assert_int_equal(count(svg, "<title>"), 284 + 20 * 6 + 2 * 5 + 18); /* elements, floors, pins, supports */
         assert_int_equal(count(svg, " fill=\"white\""), 2 * 5 + 18);
         assert_int_equal(count(svg, " stroke=\"#0072b2\""), 10); /* modes */
-        free(svg);
     }
-    json_decref(o);
-    building_free(&b);
 }
 
 TEST(a_drawing_shows_names_as_text_and_storeys_as_a_stick)
@@ -858,7 +824,7 @@ TEST(a_drawing_shows_names_as_text_and_storeys_as_a_stick)
 
 TEST(modes_have_shapes_that_are_listed)
 {
-    json_t *m = json_of("building configs/quick.ini --json");
+    json_auto_t *m = json_of("building configs/quick.ini --json");
     const json_t *shapes = json_object_get(m, "building_shapes"), *share = json_object_get(m, "building_mass_share");
     double sum = 0;
     assert_int_equal((int)json_array_size(shapes), 20);
@@ -877,7 +843,6 @@ TEST(modes_have_shapes_that_are_listed)
         sum += json_number_value(json_array_get(share, i));
     }
     assert_close(sum, 1, 1e-12);
-    json_decref(m);
 }
 
 SUITE(make_place, clear_place)

@@ -70,7 +70,7 @@ static int prepared_record(int k, Motion *m)
 TEST(generated_motions_have_the_stated_peak_and_duration)
 {
     for (int k = 0; k < N_MOTIONS; k++) {
-        Motion m;
+        OWNED(motion_free) Motion m;
         MotionFigures f;
         CHECK_OK(motion_load(&m, MOTIONS[k].source, UNIT_G, &err), &err); /* the unit of files does not matter */
         motion_figures(&m, &f);
@@ -80,14 +80,13 @@ TEST(generated_motions_have_the_stated_peak_and_duration)
         assert_close(f.duration_s, MOTIONS[k].duration_s, 1e-12);
         assert_string_equal(m.name, MOTIONS[k].source);
         assert_string_equal(m.format, "builtin");
-        motion_free(&m);
     }
 }
 
 TEST(generated_motions_leave_the_ground_at_rest)
 {
     for (int k = 0; k < N_MOTIONS; k++) {
-        Motion m;
+        OWNED(motion_free) Motion m;
         MotionFigures f;
         CHECK_OK(motion_load(&m, MOTIONS[k].source, UNIT_FROM_FILE, &err), &err);
         motion_figures(&m, &f);
@@ -97,7 +96,6 @@ TEST(generated_motions_leave_the_ground_at_rest)
         assert_true(m.accel[0] == 0 && m.accel[m.n - 1] == 0);
         assert_less(fabs(v), 0.01 * f.pgv_m_s);
         assert_less(f.pgd_m, 0.6);
-        motion_free(&m);
     }
 }
 
@@ -119,16 +117,15 @@ TEST(a_generated_motion_is_the_same_every_time)
 
 TEST(an_unknown_name_is_refused_with_the_known_ones)
 {
-    Motion m;
+    OWNED(motion_free) Motion m;
     assert_int_equal(motion_load(&m, "builtin:kobe", UNIT_FROM_FILE, &err), STATUS_BAD_DATA);
     assert_non_null(strstr(err.text, "builtin:kobe is no built-in motion; did you mean builtin:kobe-like?"));
-    motion_free(&m);
 }
 
 TEST(the_building_alone_answers_as_it_does_to_the_records)
 {
     for (int k = 0; k < N_MOTIONS; k++) {
-        Motion m = prepared(k);
+        OWNED(motion_free) Motion m = prepared(k);
         for (int b = 0; b < N_BUILDINGS; b++) {
             double J[3];
             building_alone(&m, BUILDINGS[b], J);
@@ -137,7 +134,6 @@ TEST(the_building_alone_answers_as_it_does_to_the_records)
             for (int i = 0; i < 3; i++)
                 assert_close(J[i], MOTIONS[k].J[b][i], 0.005);
         }
-        motion_free(&m);
     }
 }
 

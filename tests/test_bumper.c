@@ -142,7 +142,7 @@ static Rebound integrate(const Blow *b)
  * of the common centre of gravity is not turned over. */
 static SimResult strike(const Blow *b, Engine engine, Accuracy accuracy)
 {
-    SimModel model;
+    OWNED(model_free) SimModel model;
     SimResult result = {0};
     const double m = b->core > 0 ? 1 / (1 / b->mass + 1 / b->core) : b->mass;
     const double slow = hypot(contact_hertz_duration(b->contact.k, m, b->v), contact_bumper_duration(&b->contact, m));
@@ -153,7 +153,6 @@ static SimResult strike(const Blow *b, Engine engine, Accuracy accuracy)
     CHECK_OK(engine_entry(engine)->run(&model, &motion, &(EngineOptions){.duration = 9 * dt, .accuracy = accuracy},
                                        &result, &err),
              &err);
-    model_free(&model);
     assert_int_equal(result.outcome, RUN_OK);
     assert_int_equal(result.impacts, 1);
     return result;
@@ -232,7 +231,7 @@ TEST(an_undamped_soft_bumper_is_a_spring_in_depth_and_force)
 
 static void run_tower(const SceneOptions *o, SimResult *r)
 {
-    Motion motion;
+    OWNED(motion_free) Motion motion;
     Scene *scene;
     SimWorker *worker;
     double x[22];
@@ -247,7 +246,6 @@ static void run_tower(const SceneOptions *o, SimResult *r)
     CHECK_OK(sim_run(worker, SCENE_IMPACT, x, r, &err), &err);
     sim_worker_free(worker);
     scene_free(scene);
-    motion_free(&motion);
     assert_int_equal(r->outcome, RUN_OK);
 }
 

@@ -23,9 +23,8 @@ static void write_building(double k_factor, double m_factor, int top_first)
             nk += (size_t)snprintf(stiffness + nk, sizeof stiffness - nk, "%g%s", v, c < N - 1 ? "," : "\n");
             nm += (size_t)snprintf(mass + nm, sizeof mass - nm, "%g%s", i == j ? m : 0, c < N - 1 ? "," : "\n");
         }
-    char *folder = in_place("six");
+    FREED char *folder = in_place("six");
     mkdir(folder, 0777);
-    free(folder);
     write_in_place("six/K.csv", stiffness);
     write_in_place("six/M.csv", mass);
     write_in_place("six.ini", "[building]\nmodel = six\nheights_m = 3.5\n[core]\nwidth_m = 3\n"
@@ -59,13 +58,12 @@ static void expect_warnings(const char *wanted, const char *arguments)
 
 static void expect_text(const char *wanted, const char *arguments)
 {
-    Said s;
+    OWNED(forget) Said s;
     run(&s, "check @/six.ini %s", arguments);
     assert_int_equal(s.code, 0);
     if (!strstr(s.err, wanted))
         fail_msg("said: %s  wanted: %s", s.err, wanted);
     assert_non_null(strstr(s.out, "no fault, "));
-    forget(&s);
 }
 
 static void expect_fault(const char *wanted, const char *arguments)
@@ -134,7 +132,7 @@ TEST(simulate_and_optimize_say_what_check_finds_implausible)
     write_in_place("mm.csv", "gap_01_m,gap_02_m,gap_03_m,gap_04_m,gap_05_m,gap_06_m,t_base_m,t_top_m\n"
                              "0.1,0.1,0.1,0.1,50,50,0.01,0.02\n0.1,0.1,0.1,0.1,50,50,0.01,0.02\n");
     for (int i = 0; i < 2; i++) {
-        Said s;
+        OWNED(forget) Said s;
         json_error_t why;
         run(&s,
             "%s --set sim.duration_s=4 --set building.units=N_m_kg --set "
@@ -145,11 +143,9 @@ TEST(simulate_and_optimize_say_what_check_finds_implausible)
         assert_int_equal(times(s.err, "warning: motion.records: builtin:sylmar-like appears twice"), 1);
         if (i == 0) {
             assert_int_equal(times(s.err, "mm.csv:2: gap_05_m is 50 m and does not close; gaps are in metres"), 1);
-            json_t *o = json_loads(s.out, 0, &why);
+            json_auto_t *o = json_loads(s.out, 0, &why);
             assert_int_equal(json_array_size(o), 2);
-            json_decref(o);
         }
-        forget(&s);
     }
 }
 
@@ -200,11 +196,10 @@ TEST(units_are_taken_from_the_comments_of_the_files)
         snprintf(text, sizeof text, "%s%.17g,0\n0,%.17g\n", CASES[i].M, 3e5 / CASES[i].mass, 3e5 / CASES[i].mass);
         write_in_place(path, text);
         snprintf(text, sizeof text, "building @/%s --json", folder);
-        json_t *o = json_of("%s", text);
+        json_auto_t *o = json_of("%s", text);
         assert_close(number(o, "mass_kg"), 6e5, 1e-12);
         const json_t *mode = json_array_get(json_object_get(o, "modes"), 0);
         assert_close(number(mode, "hz"), sqrt(1e3) * (sqrt(5) - 1) / (4 * M_PI), 1e-9);
-        json_decref(o);
     }
     expect(65, "units0/K.csv: says that it is in kN/m; leave building.units at auto",
            "building @/units0 --set building.units=N_m_kg");
@@ -231,9 +226,8 @@ TEST(floors_from_the_top_down_are_noticed)
     write_building(1, 1, 1);
     expect_warnings("building.model", "");
     expect_text("bottom floor first", "");
-    char *folder = in_place("storeys");
+    FREED char *folder = in_place("storeys");
     mkdir(folder, 0777);
-    free(folder);
     snprintf(rows, sizeof rows, "%s%s%s%s", HEAD, STOREYS[0], STOREYS[1], STOREYS[2]);
     write_in_place("storeys/storeys.csv", rows);
     expect_warnings("building.model", "--set building.model=@/storeys --set core.width_m=1");
@@ -291,7 +285,7 @@ TEST(an_objective_or_a_limit_that_no_run_can_have_is_a_fault)
     write_building(1, 1, 0);
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
         for (int limit = 0; limit < 2; limit++) {
-            Said s;
+            OWNED(forget) Said s;
             char wanted[160];
             const int is_more = strncmp(cases[i].name, "ed_", 3) == 0;
             run(&s, "check @/six.ini --set 'search.%s=%s%s' --set '%s'", limit ? "limits" : "objectives", cases[i].name,
@@ -303,7 +297,6 @@ TEST(an_objective_or_a_limit_that_no_run_can_have_is_a_fault)
                      cases[i].wanted);
             if (s.code != 65 || !strstr(s.err, wanted))
                 fail_msg("%d %s\nwanted: %s", s.code, s.err, wanted);
-            forget(&s);
         }
 }
 
@@ -352,14 +345,12 @@ TEST(a_study_that_was_begun_beside_its_files_is_checked_from_elsewhere)
 
 TEST(faults_come_as_json_too)
 {
-    Said s;
+    OWNED(forget) Said s;
     write_building(1, 1, 0);
     run(&s, "check @/six.ini --json --set search.sead=3 --record nowhere.csv");
     assert_int_equal(s.code, 65);
-    json_t *o = json_loads(s.out, 0, NULL);
+    json_auto_t *o = json_loads(s.out, 0, NULL);
     assert_int_equal(json_array_size(json_object_get(o, "faults")), 2);
-    json_decref(o);
-    forget(&s);
 }
 
 /* One mass: the base shear is the spectral acceleration, as a share of g. */
@@ -378,7 +369,7 @@ TEST(the_base_shear_of_one_mass_is_its_spectral_acceleration)
                         .zeta = &zeta,
                         .storey_m = &storey,
                         .model = {.n = 1, .phi = &phi, .omega = &omega, .gamma = &gamma, .zeta = &zeta}};
-    Motion m;
+    OWNED(motion_free) Motion m;
     SceneSummary f;
     CHECK_OK(motion_load(&m, "builtin:sylmar-like", UNIT_FROM_FILE, &err), &err);
     CHECK_OK(motion_prepare(&m, 0.3, 1, &err), &err);
@@ -386,7 +377,6 @@ TEST(the_base_shear_of_one_mass_is_its_spectral_acceleration)
     spectrum_psa(&m, zeta, 1, &period, &psa);
     assert_close(f.base_shear, psa / 9.81, 1e-12);
     assert_close(f.first_mode_mass, 1, 1e-12);
-    motion_free(&m);
 }
 
 /* What check says of a study's times by itself; how fast this machine is only scales them. */
@@ -467,24 +457,22 @@ TEST(designs_of_a_file_are_simulated_one_by_one)
 
 TEST(what_is_wrong_stands_below_everything_else)
 {
-    Said s;
+    OWNED(forget) Said s;
     write_building(1, 1, 0);
     run(&s, "check @/six.ini --set core.width_m=14 --set search.sead=3 2>&1");
     const char *figures = strstr(s.out, "base_shear_share"), *warning = strstr(s.out, "is there room"),
                *fault = strstr(s.out, "search.seed");
     assert_true(figures && figures < warning && warning < fault);
     assert_int_equal(s.code, 65);
-    forget(&s);
 }
 
 static double search_time(const char *settings)
 {
-    json_t *o = json_of("check configs/quick.ini " SIX_FLOORS
-                        "--json --set sim.duration_s=3 --set motion.record=builtin:suite-01 --set "
-                        "motion.records=builtin:suite-02,builtin:suite-03,builtin:suite-04 %s",
-                        settings);
+    json_auto_t *o = json_of("check configs/quick.ini " SIX_FLOORS
+                             "--json --set sim.duration_s=3 --set motion.record=builtin:suite-01 --set "
+                             "motion.records=builtin:suite-02,builtin:suite-03,builtin:suite-04 %s",
+                             settings);
     const double seconds = number(json_object_get(o, "study"), "search_s");
-    json_decref(o);
     return seconds;
 }
 
@@ -505,12 +493,12 @@ TEST(a_study_of_the_most_floors_ends_and_has_all_cases_that_it_is_compared_with)
     char storeys[64 * (FLOORS_MAX + 1)] = "height_m,mass_kg,stiffness_n_m\n", text[400];
     SimTask task[N_OF(KINDS)];
     SimResult result[N_OF(KINDS)];
-    Run run;
+    OWNED(run_free) Run run;
     StudySummary summary;
-    Problem p;
+    OWNED(problem_close) Problem p;
     for (int s = 0; s < FLOORS_MAX; s++)
         strcat(storeys, "3.5,1e5,2e8\n");
-    char *folder = in_place("tall");
+    FREED char *folder = in_place("tall");
     mkdir(folder, 0777);
     write_in_place("tall/storeys.csv", storeys);
     snprintf(text, sizeof text,
@@ -518,7 +506,6 @@ TEST(a_study_of_the_most_floors_ends_and_has_all_cases_that_it_is_compared_with)
              "1\n[search]\nobjectives = j1_m, j3_g\n"
              "population = 4\ninitial = 4\nmax_evals = 4\npolish = 0\nthreads = 1\n",
              folder);
-    free(folder);
     const Settings s = settings_of(text, "tall-run");
     CHECK_OK(study_run(&s, &(StudyOptions){0}, &summary, NULL, &err), &err);
     CHECK_OK(run_read(&run, s.run.out, &err), &err);
@@ -531,8 +518,6 @@ TEST(a_study_of_the_most_floors_ends_and_has_all_cases_that_it_is_compared_with)
     CHECK_OK(tower_simulate(&p, N_OF(KINDS), task, result, &err), &err);
     for (size_t k = 0; k < N_OF(KINDS); k++)
         assert_true(result[k].outcome == RUN_OK && result[k].n_floors == FLOORS_MAX && result[k].j3_g > 0);
-    problem_close(&p);
-    run_free(&run);
 }
 
 /* Also a test of selftest itself: every check has something to compare, and says by how much it may differ. */
@@ -551,10 +536,9 @@ TEST(this_build_gives_the_stored_answers)
     }
     assert_int_equal(n_zero, 2); /* the core of a building without one */
     json_decref(all);
-    char *line = output_of("check --self");
+    FREED char *line = output_of("check --self");
     assert_int_equal(strncmp(line, "this build can be trusted: ", 27), 0);
     assert_ptr_equal(strchr(line, '\n'), line + strlen(line) - 1);
-    free(line);
 }
 
 SUITE(prepare, clear_place)

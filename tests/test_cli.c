@@ -4,7 +4,7 @@
 /* A design file of 20 floors: gap_j = gap * j. */
 static void write_designs(const char *name, int n, const double gap[], const double t_base[], const double t_top[])
 {
-    char *text = NULL;
+    FREED char *text = NULL;
     size_t length = 0;
     FILE *f = open_memstream(&text, &length);
     for (int j = 1; j <= 20; j++)
@@ -17,50 +17,45 @@ static void write_designs(const char *name, int n, const double gap[], const dou
     }
     fclose(f);
     write_in_place(name, text);
-    free(text);
 }
 
 TEST(optimize_and_polish_answer_as_json)
 {
-    json_t *study = json_of("optimize configs/quick.ini " SIX_FLOORS
-                            "--max-evals 60 --set sim.duration_s=4 --set search.initial=30 "
-                            "--set search.population=16 --out @/spoken --json");
+    json_auto_t *study = json_of("optimize configs/quick.ini " SIX_FLOORS
+                                 "--max-evals 60 --set sim.duration_s=4 --set search.initial=30 "
+                                 "--set search.population=16 --out @/spoken --json");
     json_t *knee = json_object_get(study, "knee");
     char design[64];
     assert_int_equal(json_integer_value(json_object_get(study, "simulated")), 60);
     snprintf(design, sizeof design, "simulate @/spoken/settings.ini --design @/spoken:%" JSON_INTEGER_FORMAT " --json",
              json_integer_value(json_object_get(knee, "design")));
-    json_t *alone = json_of("%s", design);
+    json_auto_t *alone = json_of("%s", design);
     assert_close(number(knee, "j1_m"), number(alone, "j1_m"), 1e-3);
     assert_at_most(number(json_object_get(json_object_get(study, "best"), "j1_m"), "j1_m"), number(knee, "j1_m"));
     assert_true(json_object_get(json_object_get(study, "baselines"), "links") != NULL);
-    json_t *polished = json_of("polish @/spoken --design knee --improve j2_m --max-evals 24 --json");
+    json_auto_t *polished = json_of("polish @/spoken --design knee --improve j2_m --max-evals 24 --json");
     json_t *row = json_array_get(json_object_get(polished, "polished"), 0);
     assert_close(number(row, "j1_m_before"), number(knee, "j1_m"), 1e-2);
     assert_non_null(json_string_value(json_object_get(polished, "verdict")));
-    json_decref(polished);
-    json_decref(alone);
-    json_decref(study);
 }
 
 TEST(the_spectrum_is_the_same_as_json_and_as_csv)
 {
-    json_t *o = json_of("spectrum builtin:kobe-like --pga 0.3 --set motion.stretch=3.1 --json --csv @/spectrum.csv");
-    Table t = table_of("spectrum.csv");
+    json_auto_t *o =
+        json_of("spectrum builtin:kobe-like --pga 0.3 --set motion.stretch=3.1 --json --csv @/spectrum.csv");
+    OWNED(table_free) Table t = table_of("spectrum.csv");
     assert_close(number(o, "pga_g"), 0.3, 1e-12);
     const json_t *psa = json_object_get(o, "psa_m_s2");
     assert_int_equal(json_array_size(psa), t.n_rows);
     for (size_t i = 0; i < t.n_rows; i++)
         assert_same_number(json_real_value(json_array_get(psa, i)), t.values[i * t.n_cols + 1]);
-    table_free(&t);
-    json_decref(o);
 }
 
 /* Husid's curve ends at 1, velocity and displacement reach the peaks of the table. */
 TEST(the_histories_reach_the_figures_of_the_motion)
 {
-    json_t *o = json_of("spectrum tests/motion/jma.csv --set motion.channel=EW --json --history @/history.csv");
-    Table t = table_of("history.csv");
+    json_auto_t *o = json_of("spectrum tests/motion/jma.csv --set motion.channel=EW --json --history @/history.csv");
+    OWNED(table_free) Table t = table_of("history.csv");
     assert_int_equal(t.n_rows, 43);
     assert_int_equal(t.n_cols, 5);
     assert_string_equal(json_string_value(json_object_get(o, "format")), "jma");
@@ -75,8 +70,6 @@ TEST(the_histories_reach_the_figures_of_the_motion)
     assert_close(largest[2], number(o, "pgv_m_s"), 0.05); /* its peak lies between samples */
     assert_close(largest[3], number(o, "pgd_m"), 0.05);
     assert_close(t.values[t.n_rows * t.n_cols - 1], 1, 1e-12);
-    table_free(&t);
-    json_decref(o);
 }
 
 /* A short stretch of shaking: enough for some hundred impacts, short enough for a test. */
@@ -85,18 +78,16 @@ TEST(the_histories_reach_the_figures_of_the_motion)
 TEST(simulate_gives_the_same_numbers_as_json_and_as_csv)
 {
     write_designs("two.csv", 2, (double[]){0.001, 0.004}, (double[]){0.012, 0.03}, (double[]){0.0064, 0.01});
-    json_t *list = json_of("simulate configs/quick.ini" SHORT "--design @/two.csv --json");
+    json_auto_t *list = json_of("simulate configs/quick.ini" SHORT "--design @/two.csv --json");
     free(output_of("simulate configs/quick.ini" SHORT "--design @/two.csv --csv @/results.csv"));
     char *csv = read_in_place("results.csv"), *line, *rest = csv;
-    char *streamed = output_of("simulate configs/quick.ini" SHORT "--design @/two.csv --csv -");
+    FREED char *streamed = output_of("simulate configs/quick.ini" SHORT "--design @/two.csv --csv -");
     assert_string_equal(streamed, csv);
-    free(streamed);
     assert_int_equal(json_array_size(list), 2);
-    char *table = output_of("simulate configs/quick.ini" SHORT "--design @/two.csv");
+    FREED char *table = output_of("simulate configs/quick.ini" SHORT "--design @/two.csv");
     assert_non_null(strstr(table, "\ntwo.csv:2  "));
     assert_null(strstr(table, "e+0"));
-    free(table);
-    char *names = strdup(strsep(&rest, "\n"));
+    FREED char *names = strdup(strsep(&rest, "\n"));
     assert_int_equal(strncmp(names, "design,j1_m,j2_m,j3_g,ed1_pct,ed5_10_pct,edcs_pct,mcore_kg,input_energy_j,", 72),
                      0);
     assert_non_null(strstr(names, ",impacts,"));
@@ -121,9 +112,7 @@ TEST(simulate_gives_the_same_numbers_as_json_and_as_csv)
         assert_string_equal(line, "ok");
         assert_less(0, number(o, "impacts"));
     }
-    free(names);
     free(csv);
-    json_decref(list);
 }
 
 /* ------------------------------------------------------------------------------------------- another building --- */
@@ -139,9 +128,8 @@ static void write_five_floors(double k, double m)
             nk += (size_t)snprintf(stiffness + nk, sizeof stiffness - nk, "%g%s", v, j < 4 ? "," : "\n");
             nm += (size_t)snprintf(mass + nm, sizeof mass - nm, "%g%s", i == j ? m : 0, j < 4 ? "," : "\n");
         }
-    char *folder = in_place("five");
+    FREED char *folder = in_place("five");
     assert_int_equal(mkdir(folder, 0777), 0);
-    free(folder);
     write_in_place("five/K.csv", stiffness);
     write_in_place("five/M.csv", mass);
     write_in_place("five.ini", "[building]\nmodel = five\nheights_m = 4, 3\n[core]\nwidth_m = 5\n"
@@ -156,24 +144,20 @@ TEST(a_building_of_five_floors_goes_all_the_way)
     const double k = 4e8, m = 6e5;
     write_five_floors(k, m);
     free(output_of("check @/five.ini"));
-    json_t *o = json_of("building @/five.ini --json");
+    json_auto_t *o = json_of("building @/five.ini --json");
     for (int i = 0; i < 5; i++)
         assert_close(json_real_value(json_array_get(json_object_get(o, "building_hz"), (size_t)i)),
                      sqrt(k / m) * sin((2 * i + 1) * M_PI / 22) / M_PI, 1e-9);
-    json_decref(o);
 
-    json_t *fast = json_of("simulate @/five.ini --design @/five.csv --set sim.accuracy=fine --json");
-    json_t *slow = json_of("simulate @/five.ini --design @/five.csv --set sim.engine=cvode --json");
+    json_auto_t *fast = json_of("simulate @/five.ini --design @/five.csv --set sim.accuracy=fine --json");
+    json_auto_t *slow = json_of("simulate @/five.ini --design @/five.csv --set sim.engine=cvode --json");
     assert_int_equal(json_array_size(json_object_get(fast, "peak_drift_m")), 5);
     assert_less(10, number(fast, "impacts"));
     assert_close(number(fast, "j1_m"), number(slow, "j1_m"), 1e-3);
-    json_decref(fast);
-    json_decref(slow);
 
     free(output_of("optimize @/five.ini --set sim.duration_s=6 --out @/five.run"));
-    char *front = read_in_place("five.run/front.csv");
+    FREED char *front = read_in_place("five.run/front.csv");
     assert_int_equal(strncmp(front, "id,gap_01_m,gap_02_m,gap_03_m,gap_04_m,gap_05_m,t_base_m,", 57), 0);
-    free(front);
     free(output_of("evaluate @/five.run --design knee --record builtin:elcentro-like"));
     expect(65, "a design of 20 floors has gap_06_m there", "simulate configs/quick.ini --design @/five.csv");
 }

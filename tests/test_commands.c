@@ -75,7 +75,7 @@ static int says(const char *text, char *words)
 /* Whether the command, or the program with arguments, ends with the code and says the words. */
 static int ran(int at, const char *words_of, long code, char *words, const char *arguments)
 {
-    Said s = {.code = -1};
+    OWNED(forget) Said s = {.code = -1};
     if (words_of)
         run(&s, "%s", arguments);
     const int right =
@@ -83,7 +83,6 @@ static int ran(int at, const char *words_of, long code, char *words, const char 
     if (!right)
         print_error("tests/commands.txt:%d: %s\n  exit %d (wanted %ld), said: %s%s\n", at + 1, arguments, s.code, code,
                     s.err ? s.err : "", s.out ? s.out : "");
-    forget(&s);
     return right;
 }
 

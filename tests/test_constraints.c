@@ -15,16 +15,15 @@ static void write_bounded(const char *name, const char *mode, const char *search
 
 static void assert_starts_with(const char *file, const char *head)
 {
-    char *text = read_in_place(file);
+    FREED char *text = read_in_place(file);
     assert_memory_equal(text, head, strlen(head));
-    free(text);
 }
 
 TEST(the_front_is_that_of_the_designs_whose_constraints_are_kept)
 {
     write_bounded("bounded.ini", "bounded", "");
     free(output_of("optimize @/bounded.ini --out @/bounded"));
-    Run run = run_in("bounded");
+    OWNED(run_free) Run run = run_in("bounded");
     assert_int_equal(run.n_front, 10);
     for (size_t i = 0; i < run.n_front; i++) {
         const double *x = run_x(&run, run.front[i]);
@@ -35,12 +34,10 @@ TEST(the_front_is_that_of_the_designs_whose_constraints_are_kept)
         assert_true(e->extra[0] == 6.0 - e->x[0] && e->extra[1] == e->x[0] + e->x[1] - 15.0);
         assert_true(e->violation == fmax(e->extra[0], 0.0) + fmax(e->extra[1], 0.0));
     }
-    run_free(&run);
     assert_starts_with("bounded/front.csv", "id,x1,x2,x3,f1,f2,g_1,g_2\n");
-    json_t *all = json_of("export @/bounded --json");
+    json_auto_t *all = json_of("export @/bounded --json");
     json_t *last = json_array_get(json_object_get(all, "columns"), 6);
     assert_string_equal(json_string_value(json_object_get(last, "role")), "constraint");
-    json_decref(all);
 }
 
 TEST(every_design_is_asked_for_once_the_first_one_too)
@@ -64,12 +61,11 @@ TEST(another_number_of_values_than_in_the_first_answer_fails_the_design_alone)
 {
     write_bounded("odd.ini", "unbounded", "");
     free(output_of("optimize @/odd.ini --out @/odd"));
-    Run run = run_in("odd");
+    OWNED(run_free) Run run = run_in("odd");
     assert_int_equal(run.table.n, 90);
     for (size_t i = 0; i < run.table.n; i++)
         assert_int_equal(run.table.row[i].outcome, (i + 1) % 3 == 0 ? OUTCOME_NOT_FINITE : OUTCOME_OK);
     assert_string_equal(run.table.row[2].reason, "g has 0 values and not 2 as in the first answer of the run");
-    run_free(&run);
 }
 
 /* The designs that fail before are kept as well. */
@@ -85,11 +81,10 @@ TEST(where_the_first_designs_fail_the_first_that_succeeds_says_how_many)
     char arguments[PATH_MAX + 256];
     snprintf(arguments, sizeof arguments, "optimize @/late.ini --out @/late %s", line);
     expect(69, "search.limits: none of 87 designs keeps g<=0; those that come nearest", arguments);
-    Run run = run_in("late");
+    OWNED(run_free) Run run = run_in("late");
     for (size_t i = 0; i < run.table.n; i++)
         assert_int_equal(run.table.row[i].outcome, i < 3 ? OUTCOME_ERROR : OUTCOME_OK);
     assert_true(run.schema.n_extra == 1 && run.table.row[3].extra[0] == 4.0);
-    run_free(&run);
 }
 
 TEST(threads_and_kills_change_no_byte_of_a_search_with_words_numbers_and_constraints)
@@ -98,9 +93,8 @@ TEST(threads_and_kills_change_no_byte_of_a_search_with_words_numbers_and_constra
     write_bounded("bytes.ini", "bounded", "");
     free(output_of("optimize @/bytes.ini --out @/whole"));
     free(output_of("optimize @/bytes.ini --out @/three --threads 3"));
-    char *whole = all_of("whole"), *three = all_of("three");
+    FREED char *whole = all_of("whole"), *three = all_of("three");
     assert_string_equal(whole, three);
-    free(three);
     for (size_t i = 0; i < N_OF(KILLED_AT); i++) {
         const pid_t pid = start("bytes.ini", "killed");
         const double until = now_s() + 60;
@@ -112,7 +106,6 @@ TEST(threads_and_kills_change_no_byte_of_a_search_with_words_numbers_and_constra
     free(output_of("optimize @/bytes.ini --out @/killed"));
     assert_int_equal(finished_in("killed"), 90);
     assert_same_run("whole", "killed");
-    free(whole);
 }
 
 TEST(the_welded_beam_of_the_example_has_four_constraints)
@@ -120,10 +113,9 @@ TEST(the_welded_beam_of_the_example_has_four_constraints)
     if (system("command -v python3 >/dev/null") != 0)
         skip();
     free(output_of("optimize configs/beam.ini --out @/beam --max-evals 40"));
-    Run run = run_in("beam");
+    OWNED(run_free) Run run = run_in("beam");
     assert_int_equal(run.schema.n_extra, 4);
     assert_less(0, run.n_front);
-    run_free(&run);
 }
 
 /* What the awk program of the example solves, in closed form. */
@@ -132,7 +124,7 @@ TEST(a_simulator_that_reads_a_template_is_searched)
     if (system("command -v python3 >/dev/null") != 0)
         skip();
     free(output_of("optimize configs/template.ini --out @/template --max-evals 40"));
-    Run run = run_in("template");
+    OWNED(run_free) Run run = run_in("template");
     for (size_t i = 0; i < run.table.n; i++) {
         const Evaluation *e = &run.table.row[i];
         const double b = e->x[0], h = e->x[1], steel = e->x[2] == 0, E = steel ? 210000 : 70000;
@@ -140,7 +132,6 @@ TEST(a_simulator_that_reads_a_template_is_searched)
         assert_close(e->f[1], 4 * 2000 * 1e9 / (E * b * h * h * h), 1e-8);
         assert_close(e->extra[0], 6 * 2000 * 1e3 / (b * h * h) / (steel ? 235 : 160) - 1, 1e-7);
     }
-    run_free(&run);
 }
 
 SUITE(prepare, clear_place)

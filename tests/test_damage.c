@@ -96,10 +96,9 @@ TEST(a_database_that_is_removed_in_flight_is_put_back)
         const pid_t pid = start_and_wait("flight");
         shell_in_place("rm flight/%s", FILES[i]);
         const int status = wait_end(pid);
-        char *said = read_in_place("said");
+        FREED char *said = read_in_place("said");
         if (!WIFEXITED(status) || WEXITSTATUS(status) != 74 || !strstr(said, "the same command resumes the run"))
             fail_msg("%s: %x: %s", FILES[i], status, said);
-        free(said);
         free(output_of("optimize @/flight"));
         assert_same_run("slow", "flight");
         shell_in_place("rm -r flight");
@@ -111,10 +110,9 @@ TEST(another_database_in_the_place_of_a_run_ends_it)
     const pid_t pid = start_and_wait("taken");
     shell_in_place("cp sound/run.sqlite taken/new && mv taken/new taken/run.sqlite");
     const int status = wait_end(pid);
-    char *said = read_in_place("said");
+    FREED char *said = read_in_place("said");
     if (!WIFEXITED(status) || WEXITSTATUS(status) != 74 || !strstr(said, "another file took its place"))
         fail_msg("%x: %s", status, said);
-    free(said);
 }
 
 /* -- bits ---------------------------------------------------------------------------------------------------------- */
@@ -175,9 +173,8 @@ TEST(a_damaged_run_says_what_its_tables_still_know_and_another_begins_with_it)
     expect(74, advice, "export @/hurt --csv -");
     free(output_of("optimize @/textbook.ini --new --out @/hurt --set search.start=%s/hurt/front.csv --max-evals 60",
                    place.folder));
-    char *all = all_of("hurt-2");
+    FREED char *all = all_of("hurt-2");
     write_in_place("all.csv", all);
-    free(all);
     shell_in_place(
         "cut -d, -f2-7 sound/front.csv | tail -n +2 | head -5 > was; cut -d, -f6-11 all.csv | tail -n +2 | head -5 | "
         "diff was -");

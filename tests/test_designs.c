@@ -17,34 +17,31 @@ static int make_run(void **state)
 {
     if (make_place(state) != 0)
         return -1;
-    char *said = output_of("optimize configs/quick.ini --out @/run --threads 2 --max-evals 24 --set search.initial=12 "
-                           "--set search.population=12 --set search.polish=0 --set 'search.limits=j1_m<=0.042' " SHORT);
+    FREED char *said =
+        output_of("optimize configs/quick.ini --out @/run --threads 2 --max-evals 24 --set search.initial=12 "
+                  "--set search.population=12 --set search.polish=0 --set 'search.limits=j1_m<=0.042' " SHORT);
     assert_non_null(strstr(said, "; against viscous links J1 \u00d7 "));
-    free(said);
-    Run h = run_in("run");
+    OWNED(run_free) Run h = run_in("run");
     known.knee = h.table.row[run_knee(&h)].id;
     for (size_t i = 0; i < h.table.n; i++)
         if (!h.place[i].on_front && h.place[i].ok) {
             known.off = h.table.row[i].id;
             known.off_j1 = h.table.f[i * h.schema.n_obj];
         }
-    run_free(&h);
     return known.off > 0 ? 0 : -1;
 }
 
 static double j1_of(const char *word)
 {
-    json_t *o = json_of(SIMULATE "%s", word);
+    json_auto_t *o = json_of(SIMULATE "%s", word);
     const double j1 = number(o, "j1_m");
-    json_decref(o);
     return j1;
 }
 
 TEST(a_front_of_a_taller_building_is_refused)
 {
-    char *folder = in_place("two");
+    FREED char *folder = in_place("two");
     mkdir(folder, 0777);
-    free(folder);
     write_in_place("two/storeys.csv", "height_m,mass_t,stiffness_kn_m\n3.5,300,4e5\n3.5,300,4e5\n");
     expect(65,
            "/run/front.csv: column gap_03_m belongs to another building or other design.variables: a design of these 2 "
@@ -75,10 +72,9 @@ TEST(a_row_of_a_design_file_is_taken_by_its_number)
     }
     snprintf(text, sizeof text, "%st_base_m,t_top_m\n%s0.02,0.01\n%s0.03,0.02\n", header, row[0], row[1]);
     write_in_place("two.csv", text);
-    json_t *both = json_of(SIMULATE "@/two.csv");
+    json_auto_t *both = json_of(SIMULATE "@/two.csv");
     assert_same_number(number(json_array_get(both, 1), "j1_m"), j1_of("@/two.csv:2"));
     assert_true(number(json_array_get(both, 0), "j1_m") != j1_of("@/two.csv:2"));
-    json_decref(both);
     expect(65, "has no design 3; it holds 2", SIMULATE "@/two.csv:3");
     expect(65, "is chosen by its row", SIMULATE "@/two.csv:knee");
 }
@@ -95,9 +91,8 @@ TEST(designs_off_the_front_stay_addressable)
     snprintf(word, sizeof word, "report @/run --design %ld --record builtin:sylmar-like --out @/off.html", known.off);
     free(output_of("%s", word));
     snprintf(word, sizeof word, "polish @/run --design %ld --max-evals 24", known.off);
-    char *said = output_of("%s", word);
+    FREED char *said = output_of("%s", word);
     assert_int_equal(strstr(said, "No improvement was found") != NULL, strstr(said, "\npolished") == NULL);
-    free(said);
 }
 
 TEST(evaluate_without_a_record_takes_those_of_the_run)
@@ -105,41 +100,37 @@ TEST(evaluate_without_a_record_takes_those_of_the_run)
     assert_same_output("evaluate @/run --design knee", "evaluate @/run --design knee --record builtin:kobe-like");
     free(output_of("optimize configs/quick.ini --out @/both --max-evals 8 --set search.initial=8 "
                    "--set search.population=8 --set search.polish=0 --set motion.records=builtin:sylmar-like " SHORT));
-    json_t *o = json_of("evaluate @/both --design knee --json");
+    json_auto_t *o = json_of("evaluate @/both --design knee --json");
     assert_int_equal(json_array_size(json_object_get(o, "records")), 2);
-    json_decref(o);
 }
 
 TEST(evaluate_takes_a_design_from_elsewhere)
 {
     /* Of a design that the study has not named: by the steps of the settings. */
-    json_t *o = json_of("evaluate @/both --design @/run:%ld --json", known.off),
-           *own = json_of("evaluate @/run --design %ld --json", known.off);
+    json_auto_t *o = json_of("evaluate @/both --design @/run:%ld --json", known.off),
+                *own = json_of("evaluate @/run --design %ld --json", known.off);
     const json_t *there = json_array_get(json_object_get(o, "records"), 0);
     const json_t *here = json_array_get(json_object_get(own, "records"), 0);
     assert_non_null(strstr(json_string_value(json_object_get(o, "design")), "/run:"));
     assert_same_number(number(json_object_get(there, "with_core"), "j1_m"),
                        number(json_object_get(here, "with_core"), "j1_m"));
-    json_decref(o);
-    json_decref(own);
     expect(65, "is not a design of", "polish @/both --design @/run:knee");
 }
 
 TEST(evaluate_compares_with_devices_and_replicates_have_a_named_deviation)
 {
-    json_t *o = json_of("evaluate @/run --design knee --json --replicates 3 --set sim.uncertain=contact_stiffness=0.2");
+    json_auto_t *o =
+        json_of("evaluate @/run --design knee --json --replicates 3 --set sim.uncertain=contact_stiffness=0.2");
     const json_t *record = json_array_get(json_object_get(o, "records"), 0);
     assert_less(0, number(json_object_get(record, "links"), "link_ns_m"));
     assert_less(0, number(json_object_get(record, "tmd"), "stroke_m"));
     const json_t *replicates = json_object_get(record, "replicates");
     assert_string_equal(json_string_value(json_object_get(replicates, "spread")), "as built");
     assert_same_number(number(replicates, "n"), 3);
-    json_decref(o);
-    char *said = output_of("evaluate @/run --design knee --replicates 3");
+    FREED char *said = output_of("evaluate @/run --design knee --replicates 3");
     assert_non_null(strstr(said, "mean of 3, sd predictability"));
     assert_non_null(strstr(said, "the other lines are as designed"));
     assert_non_null(strstr(said, "\nviscous links ("));
-    free(said);
     expect(65, "needs replicates that differ", "evaluate @/run --design knee --set sim.uncertain=damping=0.1");
 }
 
@@ -148,13 +139,12 @@ TEST(chances_are_among_all_numbers_and_deviations_are_named_by_what_varies)
 #define TWO_RECORDS                                                                                                    \
     "simulate configs/quick.ini --design @/run:knee --set motion.records=builtin:sylmar-like --set "                   \
     "'search.objectives=j1_m,p(drift_ratio>0.003)' --set sim.robust=mean_plus_sd " SHORT
-    json_t *o = json_of(TWO_RECORDS "--json");
+    json_auto_t *o = json_of(TWO_RECORDS "--json");
     const json_t *all = json_object_get(o, "replicates");
     assert_true(json_is_number(json_object_get(o, "p(drift_ratio>0.003)")));
     assert_true(json_is_number(json_object_get(json_object_get(all, "mean"), "p(drift_ratio>0.003)")));
     assert_true(json_is_null(json_object_get(json_object_get(all, "standard_error"), "ductility")));
     assert_string_equal(json_string_value(json_object_get(all, "spread")), "over records");
-    json_decref(o);
     char *said = output_of(TWO_RECORDS "--csv -");
     assert_non_null(strstr(said, ",p(drift_ratio>0.003)_mean,"));
     free(said);
@@ -169,14 +159,12 @@ TEST(evaluate_and_simulate_estimate_the_same_error_and_a_study_shows_that_of_its
     char words[2][400];
     snprintf(words[0], sizeof words[0], "evaluate @/run --design %ld --json", known.off);
     snprintf(words[1], sizeof words[1], SIMULATE "@/run:%ld", known.off);
-    json_t *o = json_of("%s", words[0]), *one = json_of("%s", words[1]);
+    json_auto_t *o = json_of("%s", words[0]), *one = json_of("%s", words[1]);
     const json_t *core = json_object_get(json_array_get(json_object_get(o, "records"), 0), "with_core");
     const json_t *error = json_object_get(core, "estimated_error"), *wanted = json_object_get(one, "estimated_error");
     assert_less(0, number(wanted, "j3_g"));
     assert_same_number(number(error, "j3_g"), number(wanted, "j3_g"));
     assert_same_number(number(error, "ed1_pct"), number(wanted, "ed1_pct"));
-    json_decref(o);
-    json_decref(one);
     char *said = output_of("evaluate @/run --design knee");
     assert_non_null(strstr(said, " \u00b1 "));
     free(said);
@@ -211,7 +199,7 @@ TEST(choose_names_the_extremes_and_writes_them)
 TEST(choose_limits_any_result_of_a_run)
 {
     size_t k, i;
-    Run h = run_in("run");
+    OWNED(run_free) Run h = run_in("run");
     CHECK_OK(schema_pick(&h.schema, h.schema.n_obj + h.schema.n_extra, "", "drift_ratio", &k, &err), &err);
     const double bound = h.table.row[run_knee(&h)].extra[k - h.schema.n_obj];
     json_t *o = json_of("choose @/run --json --max drift_ratio=%.17g", bound), *pick;
@@ -223,7 +211,6 @@ TEST(choose_limits_any_result_of_a_run)
     }
     assert_less(number(o, "within_limits"), (double)h.n_front);
     json_decref(o);
-    run_free(&h);
     expect(2, "did you mean drift_ratio?", "choose @/run --max drift_rato=1");
     expect(69, "this run did not store base_shear_n", "choose @/run --max base_shear_n=1");
 }
@@ -246,9 +233,8 @@ TEST(a_knee_within_limits_is_told_from_that_of_the_front)
     json_decref(o);
     assert_true(words[0]);
     snprintf(wanted, sizeof wanted, "of the whole front, is design %ld\n", known.knee);
-    char *said = output_of("choose @/run");
+    FREED char *said = output_of("choose @/run");
     assert_null(strstr(said, wanted));
-    free(said);
     expect_output(wanted, words);
 }
 

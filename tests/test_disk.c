@@ -25,9 +25,8 @@ TEST(a_second_process_is_refused_with_the_first_ones_number)
         rest(0.02);
     snprintf(wanted, sizeof wanted, "is in use by process %ld on ", (long)pid);
     expect(74, wanted, "optimize @/steady.ini --out @/locked");
-    char *said = output_of("status @/locked");
+    FREED char *said = output_of("status @/locked");
     assert_non_null(strstr(said, "running (process"));
-    free(said);
     kill(pid, SIGKILL);
     wait_end(pid);
     assert_false(folder_is_held(path_of("locked", path), &holder));
@@ -37,14 +36,13 @@ TEST(a_second_process_is_refused_with_the_first_ones_number)
 /* All of `before` is in the run as it is now. */
 static void assert_nothing_lost(const char *folder, const Run *before)
 {
-    Run after = run_in(folder);
+    OWNED(run_free) Run after = run_in(folder);
     assert_at_most(before->table.n, after.table.n);
     for (size_t i = 0; i < before->table.n; i++) {
         const size_t j = run_find(&after, before->table.row[i].id), n = before->schema.n_var;
         assert_less(j, after.table.n);
         assert_memory_equal(before->table.x + i * n, after.table.x + j * n, n * sizeof(double));
     }
-    run_free(&after);
 }
 
 /* No file may grow beyond some blocks: as a full disk, but without one. */
@@ -84,8 +82,8 @@ TEST(a_run_that_can_write_no_more_says_so_and_goes_on_later)
 TEST(a_full_disk_is_named_and_what_was_stored_stays_readable)
 {
     char disk[PATH_MAX], run_of_disk[PATH_MAX];
-    Said s;
-    Run saved;
+    OWNED(forget) Said s;
+    OWNED(run_free) Run saved;
     assert_int_equal(mkdir(path_of("disk", disk), 0777), 0);
     if (mount("none", disk, "tmpfs", 0, "size=300k") != 0)
         skip();
@@ -94,11 +92,9 @@ TEST(a_full_disk_is_named_and_what_was_stored_stays_readable)
                       (strstr(s.err, "the disk is full") || strstr(s.err, "No space left"));
     const Status readable = run_read(&saved, path_of("disk/run", run_of_disk), &err);
     const size_t n = saved.table.n;
-    run_free(&saved);
     umount2(disk, MNT_DETACH);
     if (!right)
         print_error("exit %d: %s", s.code, s.err);
-    forget(&s);
     CHECK_OK(readable, &err);
     assert_true(right && n > 12);
 }
@@ -135,35 +131,31 @@ TEST(a_run_on_a_disk_that_was_full_goes_on_at_once)
 TEST(a_folder_that_is_read_only_is_named)
 {
     char folder[PATH_MAX], run_there[PATH_MAX];
-    Run saved;
+    OWNED(run_free) Run saved;
     assert_int_equal(mkdir(path_of("fixed", folder), 0777), 0);
     if (mount(folder, folder, NULL, MS_BIND, NULL) != 0)
         skip();
     free(output_of("optimize @/textbook.ini --max-evals 20 --out @/fixed/run"));
     assert_int_equal(mount(folder, folder, NULL, MS_BIND | MS_REMOUNT | MS_RDONLY, NULL), 0);
-    Said new_run, old_run;
+    OWNED(forget) Said new_run, old_run;
     run(&new_run, "optimize @/textbook.ini --out @/fixed/other");
     run(&old_run, "optimize @/fixed/run --max-evals 30");
     const Status readable = run_read(&saved, path_of("fixed/run", run_there), &err);
     const size_t n = saved.table.n;
-    run_free(&saved);
     umount2(folder, MNT_DETACH);
     CHECK_OK(readable, &err);
     assert_int_equal(n, 20);
     assert_true(new_run.code == 74 && strstr(new_run.err, "/fixed/other: cannot be made a folder: Read-only"));
     assert_true(old_run.code == 74 && strstr(old_run.err, "/fixed/run/lock: cannot be written: Read-only"));
-    forget(&new_run);
-    forget(&old_run);
 }
 
 static size_t simulated_in(const char *name)
 {
     char path[PATH_MAX];
-    Run saved;
+    OWNED(run_free) Run saved;
     err = (Err){0};
     const Status status = run_read(&saved, path_of(name, path), &err);
     const size_t n = saved.table.n;
-    run_free(&saved);
     if (status != STATUS_OK)
         print_error("%s\n", err.text);
     return n;
@@ -186,11 +178,10 @@ TEST(a_killed_run_in_a_read_only_folder_is_read_with_its_journal)
     shell_in_place("cp -r killed archive/all && cp -r killed archive/two && rm archive/two/run.sqlite-shm");
     assert_int_equal(mount(folder, folder, NULL, MS_BIND | MS_REMOUNT | MS_RDONLY, NULL), 0);
     const size_t n_all = simulated_in("archive/all"), n_two = simulated_in("archive/two");
-    Said said;
+    OWNED(forget) Said said;
     run(&said, "status @/archive/two");
     umount2(folder, MNT_DETACH);
     assert_int_equal(said.code, 0);
-    forget(&said);
     const size_t n = simulated_in("killed");
     assert_true(n > 2 && n_all == n && n_two == n);
 }
@@ -288,16 +279,14 @@ TEST(a_database_runs_nothing_and_needs_no_more_memory_than_its_size)
 /* The first files that are opened must not get the numbers of standard output and error. */
 TEST(who_closes_the_standard_streams_finds_nothing_of_them_in_the_run)
 {
-    Said s;
+    OWNED(forget) Said s;
     free(output_of("optimize @/textbook.ini --max-evals 30 --out @/open"));
     run(&s, "optimize @/textbook.ini --max-evals 30 --out @/shut <&- >&- 2>&-");
     assert_int_equal(s.code, 74); /* its table could not be printed */
-    forget(&s);
     assert_same_run("open", "shut");
-    char *log = read_in_place("shut/log.jsonl");
+    FREED char *log = read_in_place("shut/log.jsonl");
     assert_null(strstr(log, "imtet:"));
     assert_null(strstr(log, "knee"));
-    free(log);
 }
 
 SUITE(prepare, clear_place)

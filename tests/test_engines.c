@@ -56,8 +56,8 @@ static int misses_under(ContactLaw law, int n, const Promise promises[])
 {
     static CoreBeam core;
     SceneOptions s = paper_scene();
-    Building b;
-    SimModel model;
+    OWNED(building_free) Building b;
+    OWNED(model_free) SimModel model;
     double gaps[FLOORS_MAX], accel[21];
     const Motion m = {.accel = accel, .n = 21, .dt_s = 0.05};
     s.core.section = CORE_EFFECTIVE;
@@ -81,8 +81,6 @@ static int misses_under(ContactLaw law, int n, const Promise promises[])
                       p->books, r.impacts);
         broken += !(worst <= p->objectives && r.energy_balance_error <= p->books);
     }
-    model_free(&model);
-    building_free(&b);
     return broken;
 }
 
@@ -116,7 +114,7 @@ TEST(every_engine_loses_in_an_isolated_impact_what_the_law_says)
 {
     double pulse[] = {0, -1, 0};
     const Motion m = {.accel = pulse, .n = 3, .dt_s = 1};
-    SimModel model = pair_of_masses(0.45);
+    OWNED(model_free) SimModel model = pair_of_masses(0.45);
     const double e = contact_rebound(0.45), lost = 0.5 * REDUCED * (1 - e * e);
     int broken = 0;
     for (int i = 0; i < N_PROMISES; i++) {
@@ -128,7 +126,6 @@ TEST(every_engine_loses_in_an_isolated_impact_what_the_law_says)
         broken += !(error <= p->loss && r.impacts == 1);
     }
     assert_int_equal(broken, 0);
-    model_free(&model);
 }
 
 TEST(every_engine_is_listed_under_its_name)

@@ -74,7 +74,7 @@ static void fill_gaps(double x[22], double from, double step)
 /* The other way: replicates, whose gaps scatter normally. */
 TEST(the_spread_of_gaps_that_are_one_micrometre_off_is_that_of_replicates_as_built)
 {
-    Problem single, scattered;
+    OWNED(problem_close) Problem single, scattered;
     double x[22], error[N_MEASURES], sd[N_MEASURES];
     SimResult result, shown;
     ReplicateSummary r;
@@ -90,13 +90,11 @@ TEST(the_spread_of_gaps_that_are_one_micrometre_off_is_that_of_replicates_as_bui
         assert_less(sd[k], 4 * r.sd[k]);
         assert_less(r.sd[k], 4 * sd[k]);
     }
-    problem_close(&single);
-    problem_close(&scattered);
 }
 
 TEST(gaps_that_never_close_have_no_spread_and_a_building_without_gaps_an_unknown_one)
 {
-    Problem p;
+    OWNED(problem_close) Problem p;
     double x[22], error[2 * N_MEASURES], sd[2 * N_MEASURES];
     SimResult result[2];
     fill_gaps(x, 5, 0);
@@ -106,7 +104,6 @@ TEST(gaps_that_never_close_have_no_spread_and_a_building_without_gaps_an_unknown
     CHECK_OK(estimate_designs(&p, 2, tasks, result, error, sd, &err), &err);
     assert_same_number(sd[MEASURE_J1], 0);
     assert_true(isnan(sd[N_MEASURES + MEASURE_J1]));
-    problem_close(&p);
 }
 
 static SimResult run_window(const SceneOptions *o, const PromiseCase *c)
@@ -129,7 +126,7 @@ TEST(the_error_is_below_its_estimate_in_nine_of_ten_results)
 {
     static const int RESULTS[] = {MEASURE_J1, MEASURE_J2, MEASURE_J3, MEASURE_ED1, MEASURE_ED5_10, MEASURE_EDCS};
     SceneOptions o = paper_scene(), twice = o, fine = o;
-    Motion m;
+    OWNED(motion_free) Motion m;
     int below = 0, all = 0;
     CHECK_OK(motion_load(&m, "builtin:kobe-like", UNIT_FROM_FILE, &err), &err);
     CHECK_OK(motion_prepare(&m, 0.3, 3.1, &err), &err);
@@ -150,7 +147,6 @@ TEST(the_error_is_below_its_estimate_in_nine_of_ten_results)
     }
     print_message("%d of %d errors are below their estimate\n", below, all);
     assert_at_most(9 * all, 10 * below);
-    motion_free(&m);
 }
 
 SUITE(NULL, NULL)

@@ -41,7 +41,7 @@ TEST(rows_keep_their_numbers_while_the_table_grows)
 
 TEST(an_appended_row_is_a_copy_and_what_it_lacks_is_not_known)
 {
-    EvaluationTable t = evaluation_table(2, 2, 0);
+    OWNED(evaluation_table_free) EvaluationTable t = evaluation_table(2, 2, 0);
     double x[2] = {1.0, 2.0}, f[2] = {3.0, 4.0};
     Evaluation e = {.id = 7, .kind = KIND_REPEAT, .replicates = 3, .violation = 0.25, .x = x, .f = f};
     char room[REASON_MAX];
@@ -54,7 +54,6 @@ TEST(an_appended_row_is_a_copy_and_what_it_lacks_is_not_known)
     assert_true(row->x[0] == 1.0 && row->f[0] == 3.0 && row->f[1] == 4.0 && isnan(row->sd[0]) && isnan(row->sd[1]));
     assert_int_equal(row->outcome, OUTCOME_TIMEOUT);
     assert_null(strpbrk(row->reason, ",\""));
-    evaluation_table_free(&t);
 }
 
 SUITE(NULL, NULL)

@@ -25,7 +25,7 @@ typedef struct {
  * `until` >= 0 the run stops there, in units of Hertz's duration after closing. */
 static void bounce(const Ball *ball, double until, Bounce *b)
 {
-    SimModel model;
+    OWNED(model_free) SimModel model;
     FastWork *work;
     b->penetration = contact_hertz_indentation(ball->k, ball->m, ball->v);
     b->duration = contact_hertz_duration(ball->k, ball->m, ball->v);
@@ -41,7 +41,6 @@ static void bounce(const Ball *ball, double until, Bounce *b)
     const double end = until >= 0 ? b->closing + until * b->duration : 8 * b->dt;
     fast_run(work, &model, &motion, &(EngineOptions){.duration = end}, &ball->tolerances, &b->result);
     fast_free(work);
-    model_free(&model);
 }
 
 TEST(rebound_has_its_closed_form_over_twelve_decades_of_mass_stiffness_and_speed)
@@ -135,7 +134,7 @@ TEST(a_blow_too_weak_for_the_books_still_has_its_largest_acceleration)
 {
     const Contact contact = {.k = 4.865e10, .v0_floor = 1e-300};
     for (int i = 0; i < 60; i++) {
-        SimModel model;
+        OWNED(model_free) SimModel model;
         FastWork *work;
         SimResult result;
         const double m = 1000, v = 0.1 * pow(1.03, i), dt = 7.3 * contact_hertz_duration(contact.k, m, v);
@@ -150,7 +149,6 @@ TEST(a_blow_too_weak_for_the_books_still_has_its_largest_acceleration)
         const double depth = contact_hertz_indentation(contact.k, m, v);
         assert_close(result.peak_acceleration_g[1] * 9.81, contact.k * pow(depth, 1.5) / m, 3e-2);
         fast_free(work);
-        model_free(&model);
     }
 }
 
@@ -207,7 +205,7 @@ TEST(early_window_has_the_digits_that_independent_integrators_share)
 
 TEST(kobe_without_a_core_has_its_known_response)
 {
-    Tower t = {0};
+    OWNED(tower_close) Tower t = {0};
     paper_defaults(&t.settings);
     snprintf(t.settings.motion.record, OPTION_TEXT_MAX, "../shared/records/kobe_jma_ns.csv");
     if (!record_is_there(t.settings.motion.record))
@@ -218,7 +216,6 @@ TEST(kobe_without_a_core_has_its_known_response)
     assert_close(r.j2_m, 0.1475, 3e-3);
     assert_close(r.j3_g, 0.901, 3e-3);
     assert_close(r.ed1_pct, 88.8, 3e-3);
-    tower_close(&t);
 }
 
 static void builtin_tower(Tower *t)
@@ -232,7 +229,7 @@ static void builtin_tower(Tower *t)
 
 TEST(energy_balance_closes_and_damping_never_gives)
 {
-    Tower t;
+    OWNED(tower_close) Tower t;
     builtin_tower(&t);
     const SimResult r = tower_run(&t, SCENE_IMPACT);
     assert_less(20, r.impacts);
@@ -243,12 +240,11 @@ TEST(energy_balance_closes_and_damping_never_gives)
     const double spent =
         r.kinetic_strain_j + r.damped_building_j + r.damped_core_j + r.contact_loss_j + r.clamp_j + r.contact_stored_j;
     assert_close(spent, r.input_energy_j, 1e-3);
-    tower_close(&t);
 }
 
 TEST(a_mirrored_motion_mirrors_the_response_to_the_last_bit)
 {
-    Tower t;
+    OWNED(tower_close) Tower t;
     builtin_tower(&t);
     const SimResult there = tower_run(&t, SCENE_IMPACT);
     for (size_t i = 0; i < t.motion.n; i++)
@@ -256,12 +252,11 @@ TEST(a_mirrored_motion_mirrors_the_response_to_the_last_bit)
     const SimResult mirrored = tower_run(&t, SCENE_IMPACT);
     assert_memory_equal(&there.j1_m, &mirrored.j1_m, 6 * sizeof(double));
     assert_int_equal(there.impacts, mirrored.impacts);
-    tower_close(&t);
 }
 
 TEST(a_worker_gives_the_same_bytes_whatever_it_did_before)
 {
-    Tower t;
+    OWNED(tower_close) Tower t;
     builtin_tower(&t);
     SimResult first = tower_run(&t, SCENE_IMPACT);
     t.x[3] = 0.1;
@@ -271,29 +266,26 @@ TEST(a_worker_gives_the_same_bytes_whatever_it_did_before)
     SimResult again = tower_run(&t, SCENE_IMPACT);
     first.seconds = again.seconds = 0;
     assert_memory_equal(&first, &again, sizeof first);
-    tower_close(&t);
 }
 
 TEST(motion_that_is_not_a_number_fails_the_run_and_says_so)
 {
-    Tower t;
+    OWNED(tower_close) Tower t;
     builtin_tower(&t);
     t.motion.accel[40] = NAN;
     const SimResult r = tower_run(&t, SCENE_IMPACT);
     assert_int_not_equal(r.outcome, RUN_OK);
     assert_true(r.reason[0]);
-    tower_close(&t);
 }
 
 TEST(a_negative_gap_is_no_design)
 {
-    Tower t;
+    OWNED(tower_close) Tower t;
     SimResult r;
     builtin_tower(&t);
     t.x[4] = -0.001;
     assert_int_equal(sim_run(t.worker, SCENE_IMPACT, t.x, &r, &err), STATUS_BAD_DATA);
     assert_non_null(strstr(err.text, "gap_05_m"));
-    tower_close(&t);
 }
 
 SUITE(NULL, NULL)

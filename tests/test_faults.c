@@ -66,10 +66,9 @@ static void judge(const Deed *deed, long k, const Said *said, const char *wanted
     }
     if (said->code != 0)
         fail_msg("%s: %s %ld: exit %d: %s", deed->command, ending->what, k, said->code, said->err);
-    char *result = result_of(deed, said);
+    FREED char *result = result_of(deed, said);
     if (strcmp(result, wanted) != 0)
         fail_msg("%s: %s %ld: exit 0, but the result differs", deed->command, ending->what, k);
-    free(result);
 }
 
 static long steps_between(long n)
@@ -100,9 +99,8 @@ static void refuse_memory(long k)
 
 static long count_requests(void)
 {
-    char *text = read_in_place("count");
+    FREED char *text = read_in_place("count");
     const long n = strtol(text, NULL, 10);
-    free(text);
     return n;
 }
 
@@ -114,7 +112,7 @@ static void sweep_memory(const Deed *deed)
     refuse_memory(0);
     run(&said, "%s", deed->command);
     assert_int_equal(said.code, 0);
-    char *wanted = result_of(deed, &said);
+    FREED char *wanted = result_of(deed, &said);
     forget(&said);
     const long n = count_requests(), step = steps_between(n);
     for (long k = 1; k <= n; k += step) {
@@ -126,7 +124,6 @@ static void sweep_memory(const Deed *deed)
         forget(&said);
     }
     print_message("%ld of %ld requests for memory refused: imtet %.60s\n", (n + step - 1) / step, n, deed->command);
-    free(wanted);
 }
 
 TEST(without_memory_the_program_says_so_or_gives_the_same_result)
@@ -151,12 +148,11 @@ TEST(too_little_address_space_or_stack_is_said_at_once)
         expect(71, CASES[i].words, CASES[i].command);
     }
     for (int kb = 250000; kb <= 650000; kb += 100000) { /* enough or not: it ends */
-        Said said;
+        OWNED(forget) Said said;
         snprintf(place.under, sizeof place.under, "ulimit -v %d; timeout -s KILL 60", kb);
         run(&said, "optimize @/textbook.ini --threads 2 --new --out @/narrow");
         if (said.code != 71 && (said.code != 0 || kb < 300000))
             fail_msg("%d kB: %d: %s", kb, said.code, said.err);
-        forget(&said);
     }
     place.under[0] = 0;
 }
@@ -182,18 +178,16 @@ static int can_trace(void)
 
 static long count_calls(const Refusal *r, const char *command)
 {
-    Said said;
+    OWNED(forget) Said said;
     snprintf(place.under, sizeof place.under, "strace -f --seccomp-bpf -e trace=%s -o '%s/calls' ", r->call,
              place.folder);
     run(&said, "%s", command);
     place.under[0] = 0;
     assert_int_equal(said.code, 0);
-    forget(&said);
-    char *calls = read_in_place("calls");
+    FREED char *calls = read_in_place("calls");
     long n = 0;
     for (const char *at = calls; (at = strchr(at, '\n')); at++)
         n++;
-    free(calls);
     return n;
 }
 
@@ -207,14 +201,12 @@ static void refuse_call(const Refusal *r, long k)
 /* What is left goes on to the same end, as if nothing had been. */
 static void go_on(const Deed *deed, long k, const char *wanted)
 {
-    Said said;
+    OWNED(forget) Said said;
     run(&said, "%s", deed->command);
-    char *result = said.code == 0 ? result_of(deed, &said) : strdup("");
+    FREED char *result = said.code == 0 ? result_of(deed, &said) : strdup("");
     if (said.code != 0 || strcmp(result, wanted) != 0)
         fail_msg("%s: after refusal %ld it does not go on to the same end: exit %d: %s", deed->command, k, said.code,
                  said.err);
-    free(result);
-    forget(&said);
 }
 
 static void sweep_writes(const Deed *deed, const Refusal *r)
@@ -222,7 +214,7 @@ static void sweep_writes(const Deed *deed, const Refusal *r)
     Said said;
     remove_run();
     const long n = count_calls(r, deed->command), step = steps_between(5 * n);
-    char *wanted = result_of(deed, &(Said){.out = ""});
+    FREED char *wanted = result_of(deed, &(Said){.out = ""});
     for (long k = 1; k <= n; k += step) {
         remove_run();
         refuse_call(r, k);
@@ -233,7 +225,6 @@ static void sweep_writes(const Deed *deed, const Refusal *r)
         go_on(deed, k, wanted);
     }
     print_message("%ld of %ld of %s refused: imtet %.60s\n", (n + step - 1) / step, n, r->call, deed->command);
-    free(wanted);
 }
 
 TEST(a_write_that_fails_is_told_and_the_run_goes_on_to_the_same_front)
@@ -251,10 +242,9 @@ static int make_run(void **state)
 {
     if (make_place(state) != 0)
         return -1;
-    Said said;
+    OWNED(forget) Said said;
     run(&said, STUDY("@/done"));
     const int code = said.code;
-    forget(&said);
     return code;
 }
 

@@ -65,7 +65,7 @@ TEST(a_standard_deviation_above_the_error_is_what_is_printed)
 TEST(a_share_that_is_a_negative_nothing_is_none)
 {
     Document d = {0};
-    char *text;
+    FREED char *text;
     size_t n;
     FILE *f = open_memstream(&text, &n);
     json_t *row = figures_row(document_table(&d));
@@ -78,7 +78,6 @@ TEST(a_share_that_is_a_negative_nothing_is_none)
         fail_msg("%s", text);
     assert_non_null(strstr(text, "-3.21"));
     assert_non_null(strstr(text, "0.00 ± 0.01"));
-    free(text);
 }
 
 /* The page has the rule once more, in its own language: the same text for every value and error. */

@@ -76,15 +76,13 @@ TEST(the_padding_takes_up_what_rings_on)
         Filter f;
         CHECK_OK(filter_butterworth(&f, kind, 2.0, 0.01, &err), &err);
         const size_t pad = filter_padding(&f), all = N + 20 * pad;
-        double *x = calloc(all, sizeof *x), *y = calloc(all, sizeof *y);
+        FREED double *x = calloc(all, sizeof *x), *y = calloc(all, sizeof *y);
         for (size_t i = 0; i < N; i++)
             x[i] = y[i] = sin(0.3 * (double)i) + 0.5;
         filter_zero_phase(&f, N + pad, 1, x);
         filter_zero_phase(&f, all, 1, y);
         for (size_t i = 0; i < N; i++)
             assert_less(fabs(x[i] - y[i]), 1e-5);
-        free(x);
-        free(y);
     }
 }
 
@@ -97,7 +95,7 @@ TEST(signals_side_by_side_are_filtered_as_each_alone)
     for (int i = 0; i < N * WIDTH; i++)
         all[i] = sin(0.37 * i * i);
     for (int j = 0; j < WIDTH; j += 5) {
-        double *copy = malloc(N * WIDTH * sizeof *copy);
+        FREED double *copy = malloc(N * WIDTH * sizeof *copy);
         memcpy(copy, all, N * WIDTH * sizeof *copy);
         for (int i = 0; i < N; i++)
             one[i] = all[i * WIDTH + j];
@@ -105,7 +103,6 @@ TEST(signals_side_by_side_are_filtered_as_each_alone)
         filter_zero_phase(&f, N, 1, one);
         for (int i = 0; i < N; i++)
             assert_same_number(one[i], copy[i * WIDTH + j]);
-        free(copy);
     }
     free(all);
 }

@@ -52,8 +52,8 @@ TEST(few_core_modes_and_springs_give_what_all_modes_give)
     static const double ALLOWED[RESULTS] = {3e-5, 2e-4, 1e-3}; /* without the springs 1e-4, 1e-3, 2e-3 */
     const SceneOptions o = paper_scene();
     double error[RESULTS][WINDOWS];
-    Motion m;
-    Stage t;
+    OWNED(motion_free) Motion m;
+    OWNED(stage_close) Stage t;
     CHECK_OK(motion_load(&m, "builtin:kobe-like", UNIT_FROM_FILE, &err), &err);
     CHECK_OK(motion_prepare(&m, 0.3, 3.1, &err), &err);
     const PromisePlan plan = {.options = &o, .records = &m, .n_records = 1, .n_scenes = WINDOWS};
@@ -76,15 +76,13 @@ TEST(few_core_modes_and_springs_give_what_all_modes_give)
         print_message("%s: median %.1e\n", BENCH_OBJECTIVE_NAMES[i], median);
         assert_at_most(median, ALLOWED[i]);
     }
-    stage_close(&t);
-    motion_free(&m);
 }
 
 TEST(so_many_core_modes_are_kept_as_are_asked_for)
 {
     const SceneOptions o = paper_scene();
-    Motion m;
-    Stage t;
+    OWNED(motion_free) Motion m;
+    OWNED(stage_close) Stage t;
     PromiseCase c;
     CHECK_OK(motion_load(&m, "builtin:kobe-like", UNIT_FROM_FILE, &err), &err);
     CHECK_OK(motion_prepare(&m, 0.3, 3.1, &err), &err);
@@ -97,8 +95,6 @@ TEST(so_many_core_modes_are_kept_as_are_asked_for)
     assert_true(twenty.j3_g == all.j3_g && twenty.steps == all.steps && more.j3_g == all.j3_g);
     motion_free(&c.motion);
     assert_less(2 * fabs(six.edcs_pct / all.edcs_pct - 1), fabs(two.edcs_pct / all.edcs_pct - 1));
-    stage_close(&t);
-    motion_free(&m);
 }
 
 SUITE(NULL, NULL)

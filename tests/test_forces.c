@@ -72,7 +72,7 @@ static void push_core(Frame *f, const double push[], int modes, SimForces *out)
 
 TEST(a_push_at_the_top_makes_the_shear_moment_and_stress_of_a_cantilever)
 {
-    Frame f;
+    OWNED(frame_close) Frame f;
     SimForces r;
     const double P = 3e6, t = 0.02;
     double push[N] = {[N - 1] = P};
@@ -99,12 +99,11 @@ TEST(a_push_at_the_top_makes_the_shear_moment_and_stress_of_a_cantilever)
     const double plate = 4 * M_PI * M_PI * E / (12 * (1 - nu * nu)) * t * t / (b * b);
     assert_close(r.core_buckling_pa[0], plate, 1e-12);
     assert_close(r.core_buckling_ratio, P * f.height * 0.5 * B / I / plate, 1e-7);
-    frame_close(&f);
 }
 
 TEST(a_push_in_the_middle_leaves_the_storeys_above_it_alone)
 {
-    Frame f;
+    OWNED(frame_close) Frame f;
     SimForces r;
     double push[N] = {[7] = 2e6, [3] = -5e5}, z = 0, z_of[N + 1] = {0};
     frame_open(&f, CORE_PLATE, 0.5, 0.3);
@@ -120,12 +119,11 @@ TEST(a_push_in_the_middle_leaves_the_storeys_above_it_alone)
     const double t = 0.5, width = f.options.core.width_m;
     assert_close(r.core_stress_pa, r.core_moment_nm[0] / (width * t * t / 6), 1e-9);
     assert_false(r.buckling_known);
-    frame_close(&f);
 }
 
 TEST(modes_that_are_left_out_answer_a_static_push_in_full)
 {
-    Frame f;
+    OWNED(frame_close) Frame f;
     SimForces all, few;
     double push[N] = {[2] = 4e6, [11] = 1e6, [18] = -2e6};
     frame_open(&f, CORE_BOX, 0.012, 0.0064);
@@ -135,12 +133,11 @@ TEST(modes_that_are_left_out_answer_a_static_push_in_full)
         assert_less(fabs(few.core_shear_n[s] - all.core_shear_n[s]), 1e-6 * all.core_base_shear_n);
         assert_less(fabs(few.core_moment_nm[s] - all.core_moment_nm[s]), 1e-6 * all.core_overturning_nm);
     }
-    frame_close(&f);
 }
 
 TEST(floors_pushed_by_their_own_weight_have_a_base_shear_of_one)
 {
-    Frame f;
+    OWNED(frame_close) Frame f;
     SimForces r;
     double F[N], q[N], zero[N] = {0}, moment = 0, z = 0;
     frame_open(&f, CORE_BOX, 0.012, 0.0064);
@@ -160,12 +157,11 @@ TEST(floors_pushed_by_their_own_weight_have_a_base_shear_of_one)
     assert_close(r.base_shear_ratio, 1, 1e-9);
     assert_close(r.building_overturning_nm, moment, 1e-9);
     assert_true(isnan(r.core_base_shear_n) && isnan(r.core_stress_pa) && !r.stress_known);
-    frame_close(&f);
 }
 
 TEST(a_peak_between_points_is_found_by_the_parabola)
 {
-    Frame f;
+    OWNED(frame_close) Frame f;
     SimForces r;
     double F[N] = {[N - 1] = 1e6}, q[N], now[N], zero[N] = {0};
     frame_open(&f, CORE_BOX, 0.012, 0.0064);
@@ -180,7 +176,6 @@ TEST(a_peak_between_points_is_found_by_the_parabola)
     }
     force_monitor_report(f.monitor, 4, &r);
     assert_close(r.core_base_shear_n, 1e6, 1e-3);
-    frame_close(&f);
 }
 
 /* ---- one impact ---------------------------------------------------------------------------------------------- */
@@ -225,7 +220,7 @@ static ForceMonitor *bobs_monitor(int n, ContactList *list)
 
 static void bounce(Accuracy accuracy, double speed, double r, int side, ContactList *list, SimForces *f)
 {
-    SimModel model;
+    OWNED(model_free) SimModel model;
     SimResult result;
     const double m = 280000, k = 4.865e10, duration = contact_hertz_duration(k, m, speed), dt = 7.3 * duration;
     double accel[12] = {0, -side * speed / dt};
@@ -238,7 +233,6 @@ static void bounce(Accuracy accuracy, double speed, double r, int side, ContactL
              &err);
     force_monitor_report(monitor, 8 * dt, f);
     force_monitor_free(monitor);
-    model_free(&model);
 }
 
 TEST(an_impact_has_its_closed_force_impulse_duration_and_loss)
@@ -273,7 +267,7 @@ TEST(an_impact_has_its_closed_force_impulse_duration_and_loss)
 TEST(impulses_add_up_to_the_change_of_momentum)
 {
     for (int accuracy = ACCURACY_COARSE; accuracy <= ACCURACY_FINE; accuracy++) {
-        SimModel model;
+        OWNED(model_free) SimModel model;
         SimResult result;
         SimForces f;
         ContactList list = {0};
@@ -295,7 +289,6 @@ TEST(impulses_add_up_to_the_change_of_momentum)
         assert_int_equal(f.contacts[0][0] + f.contacts[0][1] + f.contacts[1][0] + f.contacts[1][1], result.impacts);
         assert_close(impulse, end[3 + 2] * sqrt(core_mass), accuracy == ACCURACY_FINE ? 1e-8 : 1e-3);
         force_monitor_free(monitor);
-        model_free(&model);
     }
 }
 
@@ -303,7 +296,7 @@ TEST(impulses_add_up_to_the_change_of_momentum)
 
 static SimResult tower_run_of(const SimOptions *sim, SceneKind kind)
 {
-    Motion motion;
+    OWNED(motion_free) Motion motion;
     Scene *scene;
     SimWorker *worker;
     SimResult r;
@@ -321,7 +314,6 @@ static SimResult tower_run_of(const SimOptions *sim, SceneKind kind)
     CHECK_OK(sim_run(worker, kind, x, &r, &err), &err);
     sim_worker_free(worker);
     scene_free(scene);
-    motion_free(&motion);
     r.seconds = 0;
     return r;
 }
@@ -418,14 +410,14 @@ static int by_size(const void *a, const void *b)
 /* What lies between the points of a run and what it leaves out, at standard accuracy. */
 TEST(peaks_are_those_of_points_every_quarter_of_a_millisecond)
 {
-    Motion motion;
+    OWNED(motion_free) Motion motion;
     Scene *scene;
     SimWorker *worker;
     SimResult r;
     SimForces dense;
     double x[N + 2], apart[4 * N];
     int n = 0;
-    Frame f;
+    OWNED(frame_close) Frame f;
     frame_open(&f, CORE_BOX, 0.012, 0.0064);
     f.options.sim.forces = FORCES_YES;
     f.options.sim.duration_s = 40;
@@ -455,8 +447,6 @@ TEST(peaks_are_those_of_points_every_quarter_of_a_millisecond)
     assert_close(r.forces.base_shear_n, dense.base_shear_n, 5e-2);
     sim_worker_free(worker);
     scene_free(scene);
-    motion_free(&motion);
-    frame_close(&f);
 }
 
 TEST(what_measures_do_not_need_is_left_out_and_changes_none)

@@ -414,8 +414,8 @@ TEST(a_rigid_core_rocks_on_its_lifting_mat_with_the_period_of_the_quadrature)
     static double accel[SAMPLES];
     const Motion motion = {.accel = accel, .n = SAMPLES, .dt_s = 0.02};
     SceneOptions s = on_ground("rotation=1e9 radius=10 anchors=1");
-    Rocking *r = calloc(1, sizeof *r);
-    CoreBeam *core = calloc(1, sizeof *core);
+    FREED Rocking *r = calloc(1, sizeof *r);
+    FREED CoreBeam *core = calloc(1, sizeof *core);
     double x[N + 2] = {[N] = 0.02, [N + 1] = 0.02}, z[N], J = 0;
     Scene *scene;
     SimResult result;
@@ -459,8 +459,6 @@ TEST(a_rigid_core_rocks_on_its_lifting_mat_with_the_period_of_the_quadrature)
         assert_close(tops[i], tops[0], 1e-3);
     sim_worker_free(r->worker);
     scene_free(scene);
-    free(core);
-    free(r);
 }
 
 static SceneOptions small_tower(const char *foundation)

@@ -84,26 +84,22 @@ static void write_alike(FILE *list, Objects *all, size_t i)
 /* Below a command: what its output is, then the CSV files that it wrote. */
 static void write_kinds(FILE *list, const char *arguments, const char *out)
 {
-    Objects *all = calloc(1, sizeof *all);
-    json_t *json = json_loads(out, 0, NULL);
+    FREED Objects *all = calloc(1, sizeof *all);
+    json_auto_t *json = json_loads(out, 0, NULL);
     if (json)
         walk(all, "", json);
     for (size_t i = 0; i < all->n; i++)
         write_alike(list, all, i);
     if (!json && strstr(arguments, "--csv -"))
         fprintf(list, " -: %.*s\n", (int)strcspn(out, "\n"), out);
-    json_decref(json);
-    free(all);
     for (const char *at = arguments; (at = strstr(at, "@/")); at++) {
         char name[80];
         snprintf(name, sizeof name, "%.*s", (int)strcspn(at + 2, " "), at + 2);
-        char *path = in_place(name);
+        FREED char *path = in_place(name);
         if (strstr(name, ".csv") && !strstr(name, "given") && access(path, R_OK) == 0) {
-            char *text = text_of(path);
+            FREED char *text = text_of(path);
             fprintf(list, " %s: %.*s\n", name, (int)strcspn(text, "\n"), text);
-            free(text);
         }
-        free(path);
     }
 }
 
@@ -134,7 +130,7 @@ TEST(keys_of_json_and_columns_of_csv_are_those_of_the_list)
     char *wanted = text_of("tests/frozen.txt"), *now = NULL, *rest = NULL;
     size_t length;
     FILE *list = open_memstream(&now, &length);
-    char *copy = strdup(wanted);
+    FREED char *copy = strdup(wanted);
     write_in_place(
         "given.ini", SIX_FLOORS_INI
         "[design]\nvariables = gaps, thickness, links\n[sim]\nduration_s = 12\nforces = yes\n[search]\nmax_evals = 40\n"
@@ -145,10 +141,9 @@ TEST(keys_of_json_and_columns_of_csv_are_those_of_the_list)
             fprintf(list, "%s\n", line);
         if (line[0] != '=')
             continue;
-        char *out = output_of("%s", line + 2);
+        FREED char *out = output_of("%s", line + 2);
         fprintf(list, "%s\n", line);
         write_kinds(list, line, out);
-        free(out);
     }
     fclose(list);
     char *all = shortened(now);
@@ -162,7 +157,6 @@ TEST(keys_of_json_and_columns_of_csv_are_those_of_the_list)
     }
     assert_string_equal(now, wanted);
     free(now);
-    free(copy);
     free(wanted);
 }
 

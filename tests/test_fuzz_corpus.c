@@ -13,17 +13,15 @@ enum { LONGEST_S = 10 };
 
 static void replay_file(const char *path, void (*target)(const uint8_t *, size_t))
 {
-    char *text;
+    FREED char *text;
     size_t length;
     CHECK_OK(file_read(path, FILE_LARGEST, &text, &length, &err), &err);
-    uint8_t *exact = malloc(length ? length : 1); /* so that reading one byte too far is noticed */
+    FREED uint8_t *exact = malloc(length ? length : 1); /* so that reading one byte too far is noticed */
     assert_non_null(exact);
     memcpy(exact, text, length);
-    free(text);
     alarm(LONGEST_S);
     target(exact, length);
     alarm(0);
-    free(exact);
 }
 
 static void replay(const char *name, void (*target)(const uint8_t *, size_t))

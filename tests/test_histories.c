@@ -41,7 +41,8 @@ static void write_design(void)
 TEST(forces_of_a_history_are_those_of_the_contact_law)
 {
     write_design();
-    json_t *o = json_of("simulate " WINDOW "--json --history @/fast.csv --every " EVERY "--contacts @/contacts.csv");
+    json_auto_t *o =
+        json_of("simulate " WINDOW "--json --history @/fast.csv --every " EVERY "--contacts @/contacts.csv");
     const Table h = table_of("fast.csv"), contacts = table_of("contacts.csv");
     double largest = 0;
     const double nu = 0.3, k = 2 * 2.1e11 * sqrt(0.1) / (3 * (1 - nu * nu)), a = 1.5 * (1 - 0.7);
@@ -73,7 +74,6 @@ TEST(forces_of_a_history_are_those_of_the_contact_law)
     }
     assert_less(10, compared);
     assert_close(largest, number(o, "contact_force_max_n"), 1e-12);
-    json_decref(o);
     table_free((Table *)&h);
     table_free((Table *)&contacts);
 }
@@ -99,7 +99,7 @@ TEST(histories_of_both_engines_agree_before_the_horizon)
 
 TEST(a_history_reaches_the_peaks_and_its_energies_add_up)
 {
-    json_t *o = json_of("simulate " WINDOW "--json");
+    json_auto_t *o = json_of("simulate " WINDOW "--json");
     const Table h = table_of("fast.csv");
     double u = 0, drift = 0, accel = 0, input = 0, error = 0;
     for (size_t r = 0; r < h.n_rows; r++) {
@@ -125,7 +125,6 @@ TEST(a_history_reaches_the_peaks_and_its_energies_add_up)
     assert_close(accel, number(o, "j3_g"), 1e-2);
     assert_less(error, 1e-12 * input);
     assert_less(0, number(o, "j3_filtered_g"));
-    json_decref(o);
     free(output_of("simulate " SIX "--design none --history @/none.csv"));
     free(output_of("simulate " TOWER "--rigid --history @/rigid.csv --every 0.01"));
     const Table none = table_of("none.csv");
@@ -150,11 +149,10 @@ TEST(options_of_time_files_are_checked_before_the_simulation)
     };
     write_design();
     for (size_t i = 0; i < sizeof WRONG / sizeof WRONG[0]; i++) {
-        Said said;
+        OWNED(forget) Said said;
         run(&said, "simulate " TOWER "%s", WRONG[i][0]);
         if (said.code == 0 || !strstr(said.err, WRONG[i][1]) || said.out[0]) /* nor is a simulation printed */
             fail_msg("%s: exit %d, said %s", WRONG[i][0], said.code, said.err);
-        forget(&said);
     }
 }
 
@@ -222,7 +220,7 @@ static void add_sums(const SimSample *s, void *user)
 
 TEST(the_base_shear_is_what_inertia_and_damping_need)
 {
-    Motion motion = {0};
+    OWNED(motion_free) Motion motion = {0};
     Scene *scene;
     SimWorker *worker;
     SimResult r;
@@ -269,7 +267,6 @@ TEST(the_base_shear_is_what_inertia_and_damping_need)
     free(s.at);
     sim_worker_free(worker);
     scene_free(scene);
-    motion_free(&motion);
 }
 
 /* ---- the filter ------------------------------------------------------------------------------------------------ */
@@ -362,7 +359,7 @@ static void add_sample(const SimSample *s, void *user)
 
 TEST(samples_that_are_left_out_change_no_filtered_peak)
 {
-    Motion motion = {0};
+    OWNED(motion_free) Motion motion = {0};
     Scene *scene;
     SimWorker *worker;
     SimResult r;
@@ -395,7 +392,6 @@ TEST(samples_that_are_left_out_change_no_filtered_peak)
     floor_filter_free(all.filter);
     sim_worker_free(worker);
     scene_free(scene);
-    motion_free(&motion);
 }
 
 /* ---- floor spectra ----------------------------------------------------------------------------------------------- */
@@ -404,7 +400,7 @@ TEST(samples_that_are_left_out_change_no_filtered_peak)
  * damping, 1 / (2 zeta) = 10 times the acceleration, and the acceleration itself far above. */
 TEST(a_sine_has_ten_times_its_acceleration_in_the_floor_spectrum)
 {
-    char *folder = in_place("stiff"), *path = in_place("sine.csv");
+    FREED char *folder = in_place("stiff"), *path = in_place("sine.csv");
     assert_int_equal(mkdir(folder, 0777), 0);
     write_in_place("stiff/storeys.csv", "height_m,mass_t,stiffness_kn_m\n4,1,40000000\n4,1,40000000\n");
     FILE *f = fopen(path, "w");
@@ -427,8 +423,6 @@ TEST(a_sine_has_ten_times_its_acceleration_in_the_floor_spectrum)
     assert_close(cell(&t, nearest, "floor_02_psa_g"), wanted, 2e-2);
     assert_close(cell(&t, 0, "floor_02_psa_g"), 0.1, 5e-3);
     table_free((Table *)&t);
-    free(folder);
-    free(path);
 }
 
 /* ---- contacts that begin where a sample is ------------------------------------------------------------------------ */
@@ -436,7 +430,7 @@ TEST(a_sine_has_ten_times_its_acceleration_in_the_floor_spectrum)
 /* A floor of its own period between walls, shaken so that it swings up slowly. */
 static void write_one_floor(void)
 {
-    char *text = NULL;
+    FREED char *text = NULL;
     size_t length;
     char folder[PATH_MAX];
     assert_int_equal(mkdir(path_of("one", folder), 0777), 0);
@@ -447,7 +441,6 @@ static void write_one_floor(void)
         fprintf(f, "%.2f,%.17g\n", 0.02 * i, 2 * sin(2 * M_PI * 0.024 * i) * pow(sin(M_PI * i / 400), 2));
     fclose(f);
     write_in_place("one/record.csv", text);
-    free(text);
     write_in_place("one/one.ini", "[building]\nmodel = .\n[motion]\nrecord = record.csv\n");
 }
 
@@ -462,13 +455,12 @@ static long impacts_with(double gap, const char *law, const char *engine)
         "simulate @/one/one.ini --design @/one/gap.csv --json --contacts @/one/contacts.csv --set sim.duration_s=3.5 "
         "--set sim.engine=%s --set contact.law=%s",
         engine, law);
-    json_t *o = json_of("%s", command);
+    json_auto_t *o = json_of("%s", command);
     const long n = (long)number(o, "impacts");
     const Table t = table_of("one/contacts.csv");
     if (t.n_rows != (size_t)n)
         fail_msg("%s, %s, gap %.17g: %ld impacts, %zu contacts", engine, law, gap, n, t.n_rows);
     table_free((Table *)&t);
-    json_decref(o);
     return n;
 }
 

@@ -20,7 +20,7 @@ static void open_scenario(Scenario *w, double x[22], double gap_m)
 
 TEST(the_horizon_is_never_reached_without_contact)
 {
-    Scenario w;
+    OWNED(scenario_close) Scenario w;
     Horizon h;
     double x[22];
     open_scenario(&w, x, 5);
@@ -29,12 +29,11 @@ TEST(the_horizon_is_never_reached_without_contact)
         assert_true(isnan(h.reached_s[i]));
     assert_same_number(h.distance_at_end, 0);
     assert_less(15.9, h.end_s);
-    scenario_close(&w);
 }
 
 TEST(larger_changes_part_sooner_and_levels_are_reached_in_order)
 {
-    Scenario w;
+    OWNED(scenario_close) Scenario w;
     Horizon early, late;
     double x[22];
     open_scenario(&w, x, 0.008);
@@ -45,7 +44,6 @@ TEST(larger_changes_part_sooner_and_levels_are_reached_in_order)
         assert_true(!(late.reached_s[i] < early.reached_s[i]));
         assert_true(i == 0 || !(early.reached_s[i] < early.reached_s[i - 1]));
     }
-    scenario_close(&w);
 }
 
 SUITE(NULL, NULL)

@@ -66,9 +66,8 @@ enum { N_HOSTILE = sizeof HOSTILE / sizeof HOSTILE[0] };
 
 static Status read_model(const char *path, Err *why)
 {
-    Frame f;
+    OWNED(frame_free) Frame f;
     const Status status = opensees_read(&f, path, 1, 1, 0, why);
-    frame_free(&f);
     return status;
 }
 
@@ -109,7 +108,7 @@ TEST(forty_hostile_models_are_refused_with_their_line_and_leave_the_caller_alone
 /* Brackets in brackets; a model that is a device, a pipe or a folder, by a link too. */
 TEST(files_that_are_no_models_are_refused)
 {
-    char *text = malloc(50020);
+    FREED char *text = malloc(50020);
     memset(text, '[', 50000);
     memcpy(text, "set x ", 6);
     strcpy(text + 50000, "\n");
@@ -130,7 +129,6 @@ TEST(files_that_are_no_models_are_refused)
         free(others[i]);
     }
     free(deep);
-    free(text);
 }
 
 /* The server reads a model again for a design that is asked for; nothing of the program changes by a model. */
@@ -138,14 +136,13 @@ TEST(a_model_changes_neither_locale_nor_signals_nor_limits_of_its_caller)
 {
     struct rlimit before, after;
     write_in_place("bad.tcl", "set x a; while 1 {append x $x}\n");
-    char *path = in_place("bad.tcl");
+    FREED char *path = in_place("bad.tcl");
     err = (Err){0};
     getrlimit(RLIMIT_AS, &before);
     assert_int_equal(read_model(path, &err), STATUS_BAD_DATA);
     getrlimit(RLIMIT_AS, &after);
     assert_true(before.rlim_cur == after.rlim_cur);
     expect(65, "bad.tcl:1: ", "building @/bad.tcl --set building.units=N_m_kg");
-    free(path);
 }
 
 SUITE(make_place, clear_place)

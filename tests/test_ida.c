@@ -28,7 +28,7 @@ TEST(a_range_of_intensities_ends_at_its_end_in_round_numbers)
 static double fractile_of(size_t n, const double j1[], double p)
 {
     EvaluatedRecord record[8] = {0};
-    EvaluatedRun *run = calloc(8, sizeof *run);
+    FREED EvaluatedRun *run = calloc(8, sizeof *run);
     const double level = 0.3;
     for (size_t i = 0; i < n; i++) {
         run[i].record = &record[i];
@@ -37,7 +37,6 @@ static double fractile_of(size_t n, const double j1[], double p)
     }
     const Evaluations e = {.n_records = n, .n_levels = 1, .record = record, .level = &level, .run = run, .n_read = n};
     const double value = ida_fractile(&e, 0, SCENE_IMPACT, 0, p);
-    free(run);
     return value;
 }
 
@@ -87,28 +86,25 @@ static double value_at(const json_t *o, size_t i, const char *scene, const char 
 
 TEST(every_record_is_simulated_at_every_intensity)
 {
-    json_t *all = json_of(RANGE "--json");
+    json_auto_t *all = json_of(RANGE "--json");
     assert_int_equal(json_array_size(json_object_get(all, "records")), 6);
     for (size_t i = 0; i < 6; i++) {
-        json_t *one = json_of("evaluate @/run --design knee --record builtin:%s --pga 0.%zu --json",
-                              i < 3 ? "elcentro-like" : "sylmar-like", i % 3 + 1);
+        json_auto_t *one = json_of("evaluate @/run --design knee --record builtin:%s --pga 0.%zu --json",
+                                   i < 3 ? "elcentro-like" : "sylmar-like", i % 3 + 1);
         assert_close(number(record_at(all, i), "pga_g"), 0.1 * (double)(i % 3 + 1), 1e-12);
         static const char *const KEYS[] = {"with_core", "rigid", "no_core"};
         for (int c = 0; c < 3; c++)
             assert_same_number(value_at(all, i, KEYS[c], "j3_g"), value_at(one, 0, KEYS[c], "j3_g"));
-        json_decref(one);
     }
-    json_decref(all);
 }
 
 TEST(scenes_without_impacts_grow_in_proportion)
 {
-    json_t *o = json_of(RANGE "--json");
+    json_auto_t *o = json_of(RANGE "--json");
     for (size_t i = 1; i < 3; i++) {
         assert_close(value_at(o, i, "no_core", "j1_m"), (double)(i + 1) * value_at(o, 0, "no_core", "j1_m"), 1e-9);
         assert_close(value_at(o, i, "rigid", "j2_m"), (double)(i + 1) * value_at(o, 0, "rigid", "j2_m"), 1e-6);
     }
-    json_decref(o);
 }
 
 TEST(the_csv_has_every_run_and_the_fractiles_at_any_number_of_threads)
@@ -117,29 +113,25 @@ TEST(the_csv_has_every_run_and_the_fractiles_at_any_number_of_threads)
     free(output_of(RANGE "--csv @/three.csv --threads 3"));
     static const char *const FILES[][2] = {{"one.csv", "three.csv"}, {"one-fractiles.csv", "three-fractiles.csv"}};
     for (int i = 0; i < 2; i++) {
-        char *one = read_in_place(FILES[i][0]), *three = read_in_place(FILES[i][1]);
+        FREED char *one = read_in_place(FILES[i][0]), *three = read_in_place(FILES[i][1]);
         assert_string_equal(one, three);
         assert_int_equal(count(one, "\n"), i ? 1 + 3 * 3 * 3 : 1 + 2 * 3 * 3);
         assert_int_equal(count(one, "\nmedian,"), i ? 9 : 0);
         assert_true((strstr(one, "\nbuiltin:sylmar-like,rigid,ok,0.2,") != NULL) == (i == 0));
-        free(one);
-        free(three);
     }
 }
 
 TEST(the_table_and_the_picture_show_the_three_scenes)
 {
-    char *table = output_of(RANGE);
+    FREED char *table = output_of(RANGE);
     static const char *const WORDS[] = {"with core, 2 records: median", "rigidly connected, 2 records", "no core, 2"};
     for (int i = 0; i < 3; i++)
         assert_non_null(strstr(table, WORDS[i]));
-    free(table);
     if (has_browser()) {
         free(output_of(RANGE "--svg @/ida.svg"));
-        char *svg = read_in_place("ida.svg");
+        FREED char *svg = read_in_place("ida.svg");
         assert_non_null(strstr(svg, "rigidly connected: median, 16 and 84 %"));
         assert_non_null(strstr(svg, "</svg>"));
-        free(svg);
     }
 }
 
@@ -155,22 +147,19 @@ TEST(names_of_records_are_whole_and_rows_go_to_csv)
 {
     static const char NAME[] = "a_record_with_a_name_that_is_much_longer_than_forty_characters.csv";
     char name[128];
-    char *folder = in_place("many");
+    FREED char *folder = in_place("many");
     snprintf(name, sizeof name, "mkdir -p %s", folder);
     assert_int_equal(system(name), 0);
     snprintf(name, sizeof name, "many/%s", NAME);
     write_in_place(name, "t,a_m_s2\n0,0\n0.02,1\n0.04,-2\n0.06,1\n0.08,0.5\n");
     write_in_place("many/b.csv", "t,a_m_s2\n0,0\n0.02,1\n0.04,oops\n");
-    char *table = output_of("evaluate @/run --design knee --record @/many");
+    FREED char *table = output_of("evaluate @/run --design knee --record @/many");
     assert_non_null(strstr(table, "a_record_with_a_name_that_is_much_longer_than_forty_characters.csv  no core"));
     assert_non_null(strstr(table, "not read: "));
-    free(table);
     free(output_of("evaluate @/run --design knee --record @/many --csv @/rows.csv"));
-    char *rows = read_in_place("rows.csv");
+    FREED char *rows = read_in_place("rows.csv");
     assert_non_null(strstr(rows, NAME));
     assert_non_null(strstr(rows, ",no_core,ok,"));
-    free(rows);
-    free(folder);
 }
 
 /* Of the only record, in the row of the design; the other scenes have none. */

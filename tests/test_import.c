@@ -41,12 +41,11 @@ static const char PORTAL[] = "# a portal in kip and inches\n"
 TEST(a_portal_in_kip_and_inches_has_its_textbook_stiffness_in_newtons)
 {
     const double kip_in = 4448.2216152605 / 0.0254, h = 156, EI = 29000.0 * 1000, rho = (500.0 / 240) / (2 * 1000 / h);
-    Building b = import(PORTAL, BUILDING_KIP_IN);
+    OWNED(building_free) Building b = import(PORTAL, BUILDING_KIP_IN);
     assert_int_equal(b.n, 1);
     assert_close(b.K[0], kip_in * 24 * EI / (h * h * h) * (12 * rho + 1) / (12 * rho + 4), 1e-5);
     assert_close(b.M[0], kip_in * (0.2 + 0.2 + 240 * 1e-4), 1e-12); /* lumped */
     assert_close(b.storey_m[0], 156 * 0.0254, 1e-12);
-    building_free(&b);
 }
 
 /* The 20-storey frame as a model in kN, m and t. */
@@ -76,14 +75,14 @@ static char *write_model(const Frame *f)
 
 TEST(the_20_storey_frame_as_a_model_gives_the_same_matrices)
 {
-    Frame f;
-    Building wanted;
+    OWNED(frame_free) Frame f;
+    OWNED(building_free) Building wanted;
     BuildingOptions o = scene_defaults().building;
     snprintf(o.model, sizeof o.model, "configs/sac20/frame");
     CHECK_OK(building_load(&wanted, &o, &err), &err);
     CHECK_OK(frame_read(&f, &o, &err), &err);
-    char *model = write_model(&f);
-    Building b = import(model, BUILDING_KN_M_T);
+    FREED char *model = write_model(&f);
+    OWNED(building_free) Building b = import(model, BUILDING_KN_M_T);
     assert_int_equal(b.n, 20);
     double scale_k = 0, scale_m = 0;
     for (int i = 0; i < 400; i++) {
@@ -94,10 +93,6 @@ TEST(the_20_storey_frame_as_a_model_gives_the_same_matrices)
         assert_less(fabs(b.K[i] - wanted.K[i]), 1e-11 * scale_k);
         assert_less(fabs(b.M[i] - wanted.M[i]), 1e-11 * scale_m);
     }
-    free(model);
-    frame_free(&f);
-    building_free(&b);
-    building_free(&wanted);
 }
 
 TEST(loops_procedures_and_sections_give_the_frame_written_out)
@@ -122,21 +117,18 @@ TEST(loops_procedures_and_sections_give_the_frame_written_out)
         "uniaxialMaterial Elastic 1 2e8\nelement truss 7 11 21 0.1 1\nelement truss 8 12 22 0.1 1\n"
         "element truss 9 13 23 0.1 1\n";
     char text[2048];
-    char *folder = in_place("more");
+    FREED char *folder = in_place("more");
     assert_int_equal(mkdir(folder, 0777), 0);
-    free(folder);
     write_in_place("more/beam.tcl", "element elasticBeamColumn 9$k 1$k 2$k 0.1 2e8 1e-3 1 -release 3\n");
     snprintf(text, sizeof text, "%s%s", HEAD, LOOPS);
-    Building loops = import(text, BUILDING_KN_M_T);
+    OWNED(building_free) Building loops = import(text, BUILDING_KN_M_T);
     snprintf(text, sizeof text, "%s%s", HEAD, PLAIN);
-    Building plain = import(text, BUILDING_KN_M_T);
+    OWNED(building_free) Building plain = import(text, BUILDING_KN_M_T);
     assert_int_equal(loops.n, 3);
     for (int i = 0; i < 9; i++) {
         assert_close(loops.K[i], plain.K[i], 1e-12);
         assert_same_number(loops.M[i], plain.M[i]);
     }
-    building_free(&loops);
-    building_free(&plain);
 }
 
 /* Those of OpenSees' verification manual carry masses of 1e-10 along z and about the node. */
@@ -145,18 +137,16 @@ TEST(negligible_masses_leave_the_lowest_periods_of_the_full_model)
     char text[2048];
     snprintf(text, sizeof text, "%s\nmass 3 0.2 1e-10 1e-10\n", PORTAL);
     BuildingOptions o = options_of(text, BUILDING_KIP_IN);
-    Building b, full;
+    OWNED(building_free) Building b, full;
     CHECK_OK(building_load(&b, &o, &err), &err);
     o.modes = 100000;
     CHECK_OK(building_load(&full, &o, &err), &err);
     assert_close(full.model.omega[0], b.omega[0], 1e-3);
-    building_free(&b);
-    building_free(&full);
 }
 
 TEST(loads_analysis_and_output_are_skipped_with_one_note)
 {
-    Said s;
+    OWNED(forget) Said s;
     char text[2048];
     snprintf(text, sizeof text,
              "%srecorder Node -file x.out\npattern Plain 1 Linear { load 3 1. 0. 0. }\nset lambda [eigen 2]\n"
@@ -169,7 +159,6 @@ TEST(loads_analysis_and_output_are_skipped_with_one_note)
     assert_non_null(strstr(s.err, "skipped: recorder, pattern, eigen, analyze, nodeDisp, all from"));
     assert_non_null(strstr(s.err, "model.tcl:27 on"));
     assert_non_null(strstr(s.out, "1 floor"));
-    forget(&s);
 }
 
 /* OpenSees would have run on, with elements that would be missing here. */
@@ -183,7 +172,7 @@ TEST(a_script_that_fails_after_its_analysis_is_refused_where_it_goes_on_building
     };
     for (size_t i = 0; i < sizeof REST / sizeof REST[0]; i++) {
         char text[2048];
-        Said s;
+        OWNED(forget) Said s;
         snprintf(text, sizeof text,
                  "%sproc brace {tag} {\n element truss $tag 1 2 1. 1\n}\nset l [eigen 1]\nset f [expr [lindex $l 7] * "
                  "2]\n%s",
@@ -194,7 +183,6 @@ TEST(a_script_that_fails_after_its_analysis_is_refused_where_it_goes_on_building
             fail_msg("%s\n exit %d, said: %s", REST[i][0], s.code, s.err);
         if (!strstr(s.err, REST[i][1] ? REST[i][1] : "on,"))
             fail_msg("%s\n said: %s", REST[i][0], s.err);
-        forget(&s);
     }
     write_in_place("later.tcl", "eigen 1\nexpr [nodeDisp 3 1] +\n");
     char text[2048];
@@ -305,14 +293,12 @@ TEST(one_frame_in_every_form_that_elastic_models_are_written_in)
                   "element elasticBeamColumn 1 1 3 0.1 $E 1e-3 1\n" RIGHT BEAM,
     };
     write_in_place("cards.txt", "steel,2e8\n");
-    Building plain = import(PLAIN, BUILDING_KN_M_T);
+    OWNED(building_free) Building plain = import(PLAIN, BUILDING_KN_M_T);
     for (size_t i = 0; i < sizeof SAME / sizeof SAME[0]; i++) {
-        Building b = import(SAME[i], BUILDING_KN_M_T);
+        OWNED(building_free) Building b = import(SAME[i], BUILDING_KN_M_T);
         if (fabs(b.K[0] / plain.K[0] - 1) > 2e-6 || fabs(b.M[0] / plain.M[0] - 1) > 1e-12)
             fail_msg("%s\n  K %.9g, not %.9g", SAME[i], b.K[0], plain.K[0]);
-        building_free(&b);
     }
-    building_free(&plain);
 }
 
 /* 12 EI / l^3 of a column that cannot turn at its ends, l between the ends of its arms. */
@@ -331,9 +317,8 @@ TEST(rigid_arms_by_offsets_and_by_links_shorten_what_bends)
         if (i == 0) /* the beam has no arms */
             snprintf(strstr(text, "element elasticBeamColumn 3"), 200,
                      "geomTransf Linear 2\nelement elasticBeamColumn 3 3 4 1 2e8 1 2\n");
-        Building b = import(text, BUILDING_KN_M_T);
+        OWNED(building_free) Building b = import(text, BUILDING_KN_M_T);
         assert_close(b.K[0], 1e3 * 12 * 2e8 * 1e-3 / pow(2.25, 3), 1e-9);
-        building_free(&b);
     }
 }
 
@@ -345,9 +330,8 @@ TEST(a_mass_on_a_rigid_arm_moves_with_its_carrier)
         "model basic -ndm 2 -ndf 3\nnode 1 0 0; node 3 0 3; node 4 1 3; node 5 0 4 -mass 5 5 0.5\nmass 3 7 7 0\n"
         "fix 1 1 1 1; fix 3 0 1 1; fix 4 0 1 1\ngeomTransf Linear 1\nrigidLink beam 3 5\n"
         "element elasticBeamColumn 1 1 3 1e6 2e8 1e-3 1\nelement elasticBeamColumn 3 3 4 1 2e8 1 1\n";
-    Building b = import(MODEL, BUILDING_KN_M_T);
+    OWNED(building_free) Building b = import(MODEL, BUILDING_KN_M_T);
     assert_close(b.M[0], 12e3, 1e-12);
-    building_free(&b);
 }
 
 /* 48 fibres of a rectangle, two springs that yield, and what says so. */
@@ -363,34 +347,31 @@ TEST(what_yields_is_refused_or_taken_by_its_initial_stiffness)
         "uniaxialMaterial Elastic 2 3e7\nnode 33 0 3; equalDOF 3 33 1 2\n"
         "element zeroLength 9 3 33 -mat 2 -dir 6\nelement elasticBeamColumn 3 33 4 0.1 2e8 1e-3 1\n";
     BuildingOptions o = options_of(MODEL, BUILDING_KN_M_T);
-    Building b;
+    OWNED(building_free) Building b;
     err = (Err){0};
     assert_int_equal(building_load(&b, &o, &err), STATUS_BAD_DATA);
     assert_non_null(strstr(err.text, "uniaxialMaterial Steel01: only Elastic TAG E is read; building.elastic"));
     o.elastic = ELASTIC_INITIAL;
     CHECK_OK(building_load(&b, &o, &err), &err);
-    Building wanted = import(ELASTIC, BUILDING_KN_M_T);
+    OWNED(building_free) Building wanted = import(ELASTIC, BUILDING_KN_M_T);
     assert_close(b.K[0], wanted.K[0], 1e-9);
-    building_free(&b);
-    building_free(&wanted);
-    Said s;
+    OWNED(forget) Said s;
     write_in_place("model.tcl", MODEL);
     run(&s, "building @/model.tcl --set building.units=kN_m_t --set building.elastic=initial");
     assert_int_equal(s.code, 0);
     assert_non_null(strstr(s.err, "Steel01, Concrete01"));
-    forget(&s);
 }
 
 /* Of masses alone, without a level element, every mass is a floor: 3 EI / h^3 of a cantilever. */
 TEST(a_cantilever_of_one_mass_is_a_building_of_one_floor)
 {
+    OWNED(building_free)
     Building b =
         import("model basic -ndm 2 -ndf 3\nnode 1 0 0; node 2 0 4 -mass 5 5 0\nfix 1 1 1 1\ngeomTransf Linear 1\n"
                "element elasticBeamColumn 1 1 2 1 2e8 1e-3 1\n",
                BUILDING_KN_M_T);
     assert_int_equal(b.n, 1);
     assert_close(b.K[0], 1e3 * 3 * 2e8 * 1e-3 / 64, 1e-9);
-    building_free(&b);
 }
 
 /* A shear building as it is written without a plane: floors in the order of the script, heights by the setting. */
@@ -404,7 +385,7 @@ TEST(a_stick_of_springs_at_one_place_is_a_shear_building_whose_heights_the_setti
                                          "model b -ndm 2 -ndf 2\n" STICK("3", " 0", " 1") "fix 2 0 1; fix 9 0 1\n"};
     for (size_t i = 0; i < N_OF(STICKS); i++) {
         BuildingOptions o = options_of(STICKS[i], BUILDING_KN_M_T);
-        Building b;
+        OWNED(building_free) Building b;
         o.heights_m = (NumberList){2, {5, 3}};
         CHECK_OK(building_load(&b, &o, &err), &err);
         const double K[] = {4e7, -1e7, -1e7, 1e7}, M[] = {5e3, 0, 0, 4e3};
@@ -415,7 +396,6 @@ TEST(a_stick_of_springs_at_one_place_is_a_shear_building_whose_heights_the_setti
             assert_close(b.K[k], K[k], 1e-12);
             assert_true(fabs(b.M[k] - M[k]) <= 1e-9);
         }
-        building_free(&b);
     }
 }
 

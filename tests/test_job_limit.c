@@ -67,10 +67,9 @@ TEST(a_run_ends_before_its_job_and_goes_on_in_the_next)
 
 static void write_program(const char *name, const char *text)
 {
-    char *path = in_place(name);
+    FREED char *path = in_place(name);
     write_in_place(name, text);
     assert_int_equal(chmod(path, 0755), 0);
-    free(path);
 }
 
 static int status_of_wrapper(int mpirun_status)
@@ -90,9 +89,8 @@ static int status_of_wrapper(int mpirun_status)
 TEST(a_lost_node_is_75_until_three_attempts_have_brought_no_evaluation)
 {
     static const int LISTED[] = {0, 2, 65, 66, 69, 70, 71, 74, 75};
-    char *folder = in_place("lost_run");
+    FREED char *folder = in_place("lost_run");
     assert_int_equal(mkdir(folder, 0755), 0);
-    free(folder);
     write_program("mpirun", "#!/bin/sh\nexit $STATUS\n");
     write_program("imtet_mpi", "#!/bin/sh\n[ \"$1\" = status ] && cat \"$2/n\"\n");
     write_in_place("lost_run/n", "{\n  \"simulated\": 40,\n}\n");

@@ -21,14 +21,13 @@ TEST(all_eleven_points_of_a_front_are_found_among_1815_designs)
 {
     write_in_place("small.ini", SMALL "max_evals = 200\n");
     free(output_of("optimize @/small.ini --out @/small"));
-    Run run = run_in("small");
+    OWNED(run_free) Run run = run_in("small");
     size_t found[11] = {0};
     for (size_t i = 0; i < run.n_front; i++) {
         const double *f = run_f(&run, run.front[i]);
         assert_less(fabs(hypot(f[0], f[1]) - 1.0), 1e-12);
         found[(int)run_x(&run, run.front[i])[0]]++;
     }
-    run_free(&run);
     for (int k = 0; k <= 10; k++)
         assert_int_equal(found[k], 1);
 }
@@ -62,7 +61,7 @@ TEST(no_design_is_simulated_twice_and_all_are_on_their_numbers_and_words)
 {
     write_in_place("small.ini", SMALL "max_evals = 200\n");
     free(output_of("optimize @/small.ini --out @/twice"));
-    Run run = run_in("twice");
+    OWNED(run_free) Run run = run_in("twice");
     const double most[] = {10, 10, 4, 2};
     for (size_t i = 0; i < run.table.n; i++) {
         const double *x = run_x(&run, i);
@@ -74,7 +73,6 @@ TEST(no_design_is_simulated_twice_and_all_are_on_their_numbers_and_words)
         }
     }
     assert_int_equal(run.table.n, 200);
-    run_free(&run);
 }
 
 TEST(samples_give_every_number_and_word_the_same_share_and_logarithms_every_decade)
@@ -156,9 +154,9 @@ TEST(a_tower_on_steps_is_simulated_on_them_alone_and_no_design_twice)
                    "[search]\ninitial = 20\npopulation = 12\nmax_evals = 120\npolish = 0\n");
     free(output_of("optimize @/steps.ini --out @/steps --threads 1"));
     free(output_of("optimize @/steps.ini --out @/steps-2 --threads 2"));
-    char *one = all_of("steps"), *two = all_of("steps-2");
+    FREED char *one = all_of("steps"), *two = all_of("steps-2");
     assert_string_equal(one, two);
-    Run run = run_in("steps");
+    OWNED(run_free) Run run = run_in("steps");
     for (size_t i = 0; i < run.table.n; i++) {
         const double *x = run_x(&run, i);
         for (int j = 0; j < 2; j++)
@@ -171,9 +169,6 @@ TEST(a_tower_on_steps_is_simulated_on_them_alone_and_no_design_twice)
         }
     }
     assert_int_equal(run.table.n, 120);
-    run_free(&run);
-    free(one);
-    free(two);
     expect(65, "design.step_gap_m: no multiple of 0.9 lies within design.gap_m",
            "optimize @/steps.ini --out @/no --set design.step_gap_m=0.9");
     expect(65, "design.step_thickness_m: 0.01 stands behind 0.02; give them in ascending order",
@@ -193,10 +188,10 @@ TEST(a_search_of_devices_starts_from_tuned_links_and_a_tuned_mass_and_never_ends
 {
     static const SceneKind KIND[] = {SCENE_LINKS, SCENE_TMD};
     Settings s = settings_of(DEVICES, "unused");
-    Problem p;
+    OWNED(problem_close) Problem p;
     write_in_place("devices.ini", DEVICES);
     free(output_of("optimize @/devices.ini --out @/devices"));
-    Run run = run_in("devices");
+    OWNED(run_free) Run run = run_in("devices");
     CHECK_OK(tower_open(&p, &s, TOWER_AS_SET, SIZE_MAX, &err), &err);
     for (size_t i = 0; i < 2; i++) {
         Baseline b[N_SCENES];
@@ -209,8 +204,6 @@ TEST(a_search_of_devices_starts_from_tuned_links_and_a_tuned_mass_and_never_ends
             assert_false(run.front[j] != i && f[0] <= of[0] && f[1] <= of[1] && f[2] <= of[2]);
         }
     }
-    problem_close(&p);
-    run_free(&run);
 }
 
 TEST(devices_have_the_same_bytes_at_any_number_of_threads_and_after_a_kill)
@@ -226,14 +219,11 @@ TEST(devices_have_the_same_bytes_at_any_number_of_threads_and_after_a_kill)
         wait_end(pid);
     }
     free(output_of("optimize @/devices.ini --out @/cut"));
-    char *all = all_of("whole"), *two = all_of("two"), *cut = all_of("cut");
+    FREED char *all = all_of("whole"), *two = all_of("two"), *cut = all_of("cut");
     assert_string_equal(all, two);
     assert_string_equal(all, cut);
     assert_non_null(strstr(all, ",link,link,none,"));
     assert_non_null(strstr(all, ",none,none,tuned_mass,"));
-    free(all);
-    free(two);
-    free(cut);
 }
 
 TEST(workers_and_files_have_the_words_and_a_start_is_read_from_them)
@@ -249,10 +239,9 @@ TEST(workers_and_files_have_the_words_and_a_start_is_read_from_them)
     free(front);
     free(all);
     free(output_of("optimize @/words.ini --out @/again --set search.start=@/words/front.csv"));
-    Run run = run_in("again");
+    OWNED(run_free) Run run = run_in("again");
     assert_true(run_x(&run, 0)[1] == 0.0 && run_x(&run, 1)[1] == 0.0);
     assert_true(run_x(&run, 0)[0] + run_x(&run, 1)[0] == 1.0);
-    run_free(&run);
 }
 
 TEST(kinds_that_make_no_sense_are_refused_by_their_key)
@@ -279,7 +268,7 @@ TEST(kinds_that_make_no_sense_are_refused_by_their_key)
     for (size_t i = 0; i < sizeof BAD / sizeof *BAD; i++) {
         VariableKind kind[3];
         double bounds[6];
-        Steps *steps;
+        FREED Steps *steps;
         err = (Err){0};
         for (int j = 0; j < 3; j++) {
             bounds[j] = atof(BAD[i].lower);
@@ -287,7 +276,6 @@ TEST(kinds_that_make_no_sense_are_refused_by_their_key)
         }
         assert_int_equal(kinds_read(BAD[i].kinds, 3, kind, bounds, &steps, &err), STATUS_BAD_DATA);
         assert_non_null(strstr(err.text, BAD[i].message));
-        free(steps);
     }
 }
 

@@ -23,9 +23,8 @@ static Settings scene_of(const char *const sets[])
 {
     Settings s;
     settings_defaults(&s);
-    char *folder = in_place("soft");
+    FREED char *folder = in_place("soft");
     CHECK_OK(settings_put(&s, "building.model", folder, &err), &err);
-    free(folder);
     CHECK_OK(settings_set(&s, "core.width_m=5", &err), &err);
     CHECK_OK(settings_set(&s, "motion.record=builtin:sylmar-like", &err), &err);
     CHECK_OK(settings_set(&s, "motion.pga_g=0.3", &err), &err);
@@ -60,11 +59,10 @@ static const LadderEffect *effect(const Ladder *l, const char *key)
 
 static SimResult simulated_as(SceneKind kind, const Settings *s, const double x[])
 {
-    Problem p;
+    OWNED(problem_close) Problem p;
     SimResult r;
     CHECK_OK(tower_open(&p, s, TOWER_SINGLE, 1, &err), &err);
     CHECK_OK(tower_simulate(&p, 1, &(SimTask){.kind = kind, .x = x}, &r, &err), &err);
-    problem_close(&p);
     return r;
 }
 
@@ -99,7 +97,7 @@ TEST(each_change_is_that_of_two_simulations_and_the_set_is_enough)
     double x[N + 2];
     const Settings s = scene_of((const char *const[]){NULL});
     design_with(0.008, x);
-    Ladder *l = find(&s, x, LADDER_WHOLE);
+    FREED Ladder *l = find(&s, x, LADDER_WHOLE);
     const Settings all = composed(&s, l, all_but_steps);
     const SimResult with = simulated(&all, x);
     assert_same_number(l->value[0], with.j1_m);
@@ -131,7 +129,6 @@ TEST(each_change_is_that_of_two_simulations_and_the_set_is_enough)
         assert_close(l->set[i][1], scene.drift_ratio_max, 1e-9);
         assert_close(l->set[i][2], scene.j3_g, 1e-9);
     }
-    free(l);
 }
 
 TEST(a_brief_ladder_has_the_same_changes_and_verdicts_without_steps_and_costs)
@@ -139,7 +136,7 @@ TEST(a_brief_ladder_has_the_same_changes_and_verdicts_without_steps_and_costs)
     double x[N + 2];
     const Settings s = scene_of((const char *const[]){NULL});
     design_with(0.008, x);
-    Ladder *whole = find(&s, x, LADDER_WHOLE), *brief = find(&s, x, LADDER_BRIEF);
+    FREED Ladder *whole = find(&s, x, LADDER_WHOLE), *brief = find(&s, x, LADDER_BRIEF);
     assert_int_equal(brief->n, whole->n - 1);
     assert_true(isnan(brief->all_s) && isnan(brief->set_s));
     for (size_t i = 0; i < brief->n; i++) {
@@ -149,8 +146,6 @@ TEST(a_brief_ladder_has_the_same_changes_and_verdicts_without_steps_and_costs)
         for (int k = 0; k < LADDER_MEASURES; k++)
             assert_close(1 + brief->effect[i].change[0][k], 1 + whole->effect[i].change[0][k], 1e-9);
     }
-    free(whole);
-    free(brief);
 }
 
 /* Gaps that never close: nothing of the core or its contacts matters, and what is left is the building alone. */
@@ -160,7 +155,7 @@ TEST(without_contact_nothing_of_the_core_changes_the_design_or_the_building_alon
     double x[N + 2];
     const Settings s = scene_of((const char *const[]){NULL});
     design_with(9, x);
-    Ladder *l = find(&s, x, LADDER_WHOLE);
+    FREED Ladder *l = find(&s, x, LADDER_WHOLE);
     for (int i = 0; i < 3; i++) {
         const LadderEffect *e = effect(l, OF_CORE[i]);
         assert_non_null(e);
@@ -170,7 +165,6 @@ TEST(without_contact_nothing_of_the_core_changes_the_design_or_the_building_alon
         assert_true(!e->is_needed || LADDER_SCENE[e->decided_in] == SCENE_RIGID);
     }
     assert_true(effect(l, "building.p_delta")->is_needed);
-    free(l);
 }
 
 TEST(what_the_settings_have_stays_as_they_have_it)
@@ -179,13 +173,12 @@ TEST(what_the_settings_have_stays_as_they_have_it)
     const Settings s = scene_of(
         (const char *const[]){"core.foundation=rotation=5.5e11", "sim.accuracy=fine", "sim.duration_s=5", NULL});
     design_with(0.008, x);
-    Ladder *l = find(&s, x, LADDER_WHOLE);
+    FREED Ladder *l = find(&s, x, LADDER_WHOLE);
     const LadderEffect *ground = effect(l, "core.foundation"), *steps = effect(l, "sim.accuracy");
     assert_true(ground->is_set && steps->is_set);
     assert_string_equal(ground->with, "rotation=5.5e11");
     assert_string_equal(steps->without, "standard");
     assert_null(effect(l, "sim.duration_s")); /* the run ends before the strong part does */
-    free(l);
 }
 
 TEST(a_neighbour_has_no_ground_and_no_beam)
@@ -212,9 +205,8 @@ TEST(the_hardening_that_p_delta_raises_is_said)
     assert_less(0.06, wanted);
     const Settings s = scene_of((const char *const[]){NULL});
     design_with(0.008, x);
-    Ladder *l = find(&s, x, LADDER_BRIEF);
+    FREED Ladder *l = find(&s, x, LADDER_BRIEF);
     assert_close(l->hardening, wanted, 1e-6);
-    free(l);
 }
 
 TEST(a_scatter_as_built_above_the_tolerance_takes_its_place)
@@ -222,10 +214,9 @@ TEST(a_scatter_as_built_above_the_tolerance_takes_its_place)
     double x[N + 2];
     const Settings s = scene_of((const char *const[]){"sim.replicates=2", "sim.gap_tolerance_m=0.03", NULL});
     design_with(0.008, x);
-    Ladder *l = find(&s, x, LADDER_WHOLE);
+    FREED Ladder *l = find(&s, x, LADDER_WHOLE);
     assert_less(LADDER_TOLERANCE, l->tolerance[0]);
     assert_less(LADDER_TOLERANCE, l->tolerance[2]);
-    free(l);
 }
 
 TEST(the_command_prints_the_ladder_and_refuses_it_where_there_is_no_tower)
@@ -251,7 +242,7 @@ TEST(an_effect_is_needed_where_only_the_building_alone_needs_it_and_the_set_has_
         "design.link_n_s_m=1e3,1e8", "design.thickness_m=0.01,0.05", "search.objectives=j1_m,ductility",
         "building.yield_drift=0.01", "motion.pga_g=0.5", NULL});
     double design[4] = {x[0], x[1], x[1], x[2]};
-    Ladder *l = find(&s, design, LADDER_WHOLE);
+    FREED Ladder *l = find(&s, design, LADDER_WHOLE);
     const LadderEffect *yielding = effect(l, "building.yield_drift");
     assert_less(fabs(yielding->change[0][0]), LADDER_TOLERANCE);
     assert_true(yielding->is_needed);
@@ -261,7 +252,6 @@ TEST(an_effect_is_needed_where_only_the_building_alone_needs_it_and_the_set_has_
         const SimResult with = simulated_as(LADDER_SCENE[c], &all, design);
         assert_at_most(fabs(l->set[c][0] / with.j1_m - 1), LADDER_TOLERANCE);
     }
-    free(l);
 }
 
 SUITE(make_building, clear_place)

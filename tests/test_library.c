@@ -303,7 +303,7 @@ TEST(the_shared_library_shows_the_functions_of_its_headers_and_nothing_else)
         skip();
     char *shown = shell("nm -D --defined-only " LIBRARY " | awk '$2 == \"T\" { sub(/@.*/, \"\", $3); print $3 } "
                         "$2 != \"T\" && $2 != \"A\" { print \"other:\", $3 }' | sort");
-    char *wanted =
+    FREED char *wanted =
         shell("sed -n 's/^IMTET_API .*[ *]\\(imtet_[a-z_]*\\)(.*/\\1/p' include/imtet.h include/imtet_scene.h | sort");
     assert_string_equal(shown, wanted);
     size_t n = 0;
@@ -311,7 +311,6 @@ TEST(the_shared_library_shows_the_functions_of_its_headers_and_nothing_else)
         n += *c == '\n';
     assert_at_most(n, 25);
     free(shown);
-    free(wanted);
     shown = shell("nm --defined-only build/release/libimtet.a | awk '$2 ~ /[ABDRTVW]/ && $3 !~ /^imtet_/ { print }'");
     assert_string_equal(shown, "");
     free(shown);
@@ -376,10 +375,9 @@ TEST(what_is_installed_compiles_and_links_by_pkg_config_and_is_gone_again)
              "&& LD_LIBRARY_PATH=$P/opt/lib $P/a && rm $P/a && make -s uninstall-library DESTDIR=$P PREFIX=/opt && "
              "find $P -type f -o -type l",
              place.folder);
-    char *said = shell(command);
+    FREED char *said = shell(command);
     assert_non_null(strstr(said, "designs on the front"));
     assert_null(strstr(said, "root/"));
-    free(said);
 }
 
 TEST(python_does_what_its_tests_say)

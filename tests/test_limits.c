@@ -18,16 +18,15 @@ static double missed(const double f[])
 
 TEST(limits_that_nothing_keeps_end_with_the_nearest_designs)
 {
-    Said s;
+    OWNED(forget) Said s;
     write_in_place("unmet.ini", UNMET);
     run(&s, "optimize @/unmet.ini --out @/unmet");
     assert_int_equal(s.code, 69);
     assert_non_null(strstr(s.err, "none of 40 designs keeps f1<=0.2,f2<=0.2,f3<=0.2"));
     assert_non_null(strstr(s.out, "nearest.csv"));
-    forget(&s);
 
-    Table nearest = table_of("unmet/nearest.csv");
-    Run all = run_in("unmet");
+    OWNED(table_free) Table nearest = table_of("unmet/nearest.csv");
+    OWNED(run_free) Run all = run_in("unmet");
     assert_int_equal(nearest.n_rows, NEAREST_MAX);
     assert_int_equal(all.table.n, 40);
     double last = 0.0;
@@ -41,12 +40,9 @@ TEST(limits_that_nothing_keeps_end_with_the_nearest_designs)
             nearer += missed(all.F + j * 3) < row[1] - 1e-9;
         assert_at_most(nearer, i);
     }
-    table_free(&nearest);
-    run_free(&all);
 
-    char *front = read_in_place("unmet/front.csv");
+    FREED char *front = read_in_place("unmet/front.csv");
     assert_string_equal(strchr(front, '\n'), "\n");
-    free(front);
     static const char *const USES[] = {"choose @/unmet", "report @/unmet", "report @/unmet --pictures @/p"};
     for (size_t i = 0; i < sizeof USES / sizeof USES[0]; i++) {
         expect(69, "none of 40 designs keeps f1<=0.2,f2<=0.2,f3<=0.2", USES[i]);
@@ -98,13 +94,12 @@ static double most_behind(const char *name)
 {
     char file[64];
     snprintf(file, sizeof file, "%s/front.csv", name);
-    Table t = table_of(file);
+    OWNED(table_free) Table t = table_of(file);
     double best = INFINITY;
     for (size_t i = 0; i < t.n_rows; i++) {
         const double *f = t.values + i * t.n_cols + table_column(&t, "f1");
         best = fmin(best, fmax(fmax(f[0] - 0.2, f[1] - 0.2), f[2] - 0.6));
     }
-    table_free(&t);
     return best;
 }
 
@@ -124,15 +119,12 @@ TEST(levels_leave_limits_as_they_are_and_are_the_same_bytes_at_any_number_of_thr
                                                  "aspire = f1 0.5,f2 0.1\nlimits = f1<=0.3\n");
     free(output_of("optimize @/levels.ini --out @/one --threads 1"));
     free(output_of("optimize @/levels.ini --out @/three --threads 3"));
-    char *one = read_in_place("one/front.csv"), *three = read_in_place("three/front.csv");
+    FREED char *one = read_in_place("one/front.csv"), *three = read_in_place("three/front.csv");
     assert_string_equal(one, three);
-    Table t = table_of("one/front.csv");
+    OWNED(table_free) Table t = table_of("one/front.csv");
     assert_less(5, t.n_rows);
     for (size_t i = 0; i < t.n_rows; i++)
         assert_at_most(t.values[i * t.n_cols + table_column(&t, "f1")], 0.3);
-    table_free(&t);
-    free(one);
-    free(three);
     expect(65, "search.aspire: item 2 of 'f1 0.5,f2' is not NAME NUMBER",
            "optimize @/levels.ini --out @/no --set 'search.aspire=f1 0.5,f2'");
     expect(65, "search.aspire: f4 is no objective", "optimize @/levels.ini --out @/no --set 'search.aspire=f4 0.5'");

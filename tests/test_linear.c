@@ -75,10 +75,10 @@ static void add_devices(SimModel *m, SceneKind kind, double mass, LinearDevice d
 static SimResult run_system(SceneKind kind, const Frame *f, const CoreBeam *core, LinearDevice device,
                             const Motion *motion)
 {
-    Joined both = {.building = f->b};
+    OWNED(joined_free) Joined both = {.building = f->b};
     const SceneOptions o = paper_scene();
     const EngineOptions fine = {.duration = (double)(motion->n - 1) * motion->dt_s, .accuracy = ACCURACY_FINE};
-    SimModel m;
+    OWNED(model_free) SimModel m;
     SimResult r;
     if (kind == SCENE_RIGID)
         CHECK_OK(joined_make(&both, &f->b, core, &err), &err);
@@ -89,8 +89,6 @@ static SimResult run_system(SceneKind kind, const Frame *f, const CoreBeam *core
     CHECK_OK(engine_fast(&m, motion, &fine, &r, &err), &err);
     if (kind == SCENE_RIGID)
         joined_book(&both, &r);
-    joined_free(&both);
-    model_free(&m);
     return r;
 }
 
@@ -107,8 +105,8 @@ TEST(a_tuned_mass_answers_a_harmonic_as_its_transfer_function)
 {
     enum { SAMPLES = 60001 };
     const double w1 = 2 * M_PI, ratios[] = {0.85, 0.95, 1.1, 1.3};
-    double *accel = malloc(SAMPLES * sizeof *accel);
-    CoreBeam *core = calloc(1, sizeof *core);
+    FREED double *accel = malloc(SAMPLES * sizeof *accel);
+    FREED CoreBeam *core = calloc(1, sizeof *core);
     Frame f;
     make_frame(&f, 1, w1 * w1, 1, 0);
     core->mass_kg = 0.05;
@@ -122,8 +120,6 @@ TEST(a_tuned_mass_answers_a_harmonic_as_its_transfer_function)
         assert_close(r.j1_m, amplitude(w1, 0.05, d, w), 2e-3);
         assert_less(r.energy_balance_error, 1e-6);
     }
-    free(accel);
-    free(core);
 }
 
 /* int |x1|^2 dw, white noise at the base. */
@@ -303,7 +299,7 @@ TEST(tuned_mass_and_links_agree_with_runge_and_kutta_in_the_displacements)
     double accel[SHAKES], J[3];
     Frame f;
     Physical p;
-    CoreBeam *core = calloc(1, sizeof *core);
+    FREED CoreBeam *core = calloc(1, sizeof *core);
     const LinearDevice d = {.tmd_hz = 1.3, .tmd_damping = 0.2, .link_ns_m = 4e5};
     o.core.width_m = 1; /* slender, so that its fastest mode needs no tiny steps */
     make_shaking(accel);
@@ -323,7 +319,6 @@ TEST(tuned_mass_and_links_agree_with_runge_and_kutta_in_the_displacements)
         assert_less(r.energy_balance_error, 1e-7);
         assert_true(r.stroke_m > 0 && r.dashpot_n > 0);
     }
-    free(core);
 }
 
 /* Where a storey of frequency w turns next: around F / k beside its rest, without a loss else. */
@@ -343,7 +338,7 @@ TEST(friction_takes_four_times_its_force_over_the_stiffness_from_every_cycle)
     double accel[141] = {0, 10, 10, 10, 10, 10}, turn[2];
     const Motion motion = {.dt_s = 0.05, .n = 141, .accel = accel};
     Frame f;
-    SimModel m;
+    OWNED(model_free) SimModel m;
     SimResult r;
     make_frame(&f, 1, w * w, 1, 0);
     CHECK_OK(model_create(&m, 1, 1, &err), &err);
@@ -362,7 +357,6 @@ TEST(friction_takes_four_times_its_force_over_the_stiffness_from_every_cycle)
         assert_close(r.device_loss_j + 0.5 * (pow(w * ended[0], 2) + pow(ended[1], 2)), r.input_energy_j, 1e-3);
         assert_less(r.energy_balance_error, 5e-4);
     }
-    model_free(&m);
 }
 
 TEST(links_without_damping_are_no_links_and_with_much_of_it_the_rigid_connection)
@@ -371,7 +365,7 @@ TEST(links_without_damping_are_no_links_and_with_much_of_it_the_rigid_connection
     double accel[SHAKES], J[3];
     Frame f;
     Physical p;
-    CoreBeam *core = calloc(1, sizeof *core);
+    FREED CoreBeam *core = calloc(1, sizeof *core);
     o.core.width_m = 1; /* slender, as above */
     make_shaking(accel);
     make_frame(&f, N, 4e7, 1e5, 0.03);
@@ -392,7 +386,6 @@ TEST(links_without_damping_are_no_links_and_with_much_of_it_the_rigid_connection
         before = off;
     }
     assert_less(before, 2e-3);
-    free(core);
 }
 
 /* Displacements of both as one in their own modes, each with the ratio zeta: C = M phi diag(2 zeta w) phi' M. */
@@ -403,7 +396,7 @@ TEST(rigidly_connected_every_mode_of_both_has_the_damping_of_the_building)
     double accel[SHAKES], J[3], M[NN], phi[NN], omega[N];
     Frame f;
     Physical p = {.n = N};
-    CoreBeam *core = calloc(1, sizeof *core);
+    FREED CoreBeam *core = calloc(1, sizeof *core);
     o.core.width_m = 1;
     o.core.damping = 0.2; /* has no say */
     make_shaking(accel);
@@ -425,7 +418,6 @@ TEST(rigidly_connected_every_mode_of_both_has_the_damping_of_the_building)
     assert_close(r.j3_g, J[2], 1e-5);
     assert_less(r.energy_balance_error, 1e-7);
     assert_true(r.damped_core_j > 0 && r.damped_building_j > r.damped_core_j);
-    free(core);
 }
 
 /* -- baselines of a tower ------------------------------------------------------------------------------------------ */
@@ -508,7 +500,7 @@ static double goal(const Baseline *b, const Baseline *no_core)
 
 static void find_devices(const char *records, double yield_drift)
 {
-    Problem p;
+    OWNED(problem_close) Problem p;
     double x[22];
     Baseline b[N_SCENES];
     rigid_design(6, x);
@@ -535,7 +527,6 @@ static void find_devices(const char *records, double yield_drift)
             assert_less(found - 0.01, goal(&other, &b[SCENE_NO_CORE]));
         }
     }
-    problem_close(&p);
 }
 
 /* Forces on floors may come when the ground is at rest. */
@@ -570,7 +561,7 @@ TEST(devices_of_a_tower_that_yields_are_found_for_it)
  * baseline has more. */
 TEST(gaps_that_vanish_are_tight_links_and_the_rigid_baseline_is_damped_more)
 {
-    Problem p;
+    OWNED(problem_close) Problem p;
     double x[22];
     SimResult rigid, closed, tight;
     rigid_design(20, x);
@@ -581,7 +572,6 @@ TEST(gaps_that_vanish_are_tight_links_and_the_rigid_baseline_is_damped_more)
     assert_close(closed.j1_m, tight.j1_m, 0.02);
     assert_close(closed.j2_m, tight.j2_m, 0.05);
     assert_less(rigid.j1_m, 0.97 * tight.j1_m);
-    problem_close(&p);
 }
 
 SUITE(NULL, NULL)

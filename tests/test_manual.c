@@ -40,23 +40,19 @@ TEST(every_command_has_a_page_with_the_sections_of_man_and_all_its_options)
         }
         free(page);
     }
-    char *all = output_of("--man");
+    FREED char *all = output_of("--man");
     for (int i = 0; command_at(i); i++)
         assert_true(has_entry(all, command_at(i)->name));
     assert_non_null(strstr(all, "\n.SH COMMANDS\n"));
-    free(all);
 }
 
 TEST(help_of_a_command_is_the_same_both_ways)
 {
-    char *first = output_of("help simulate"), *second = output_of("simulate --help"), *all = output_of("help");
+    FREED char *first = output_of("help simulate"), *second = output_of("simulate --help"), *all = output_of("help");
     assert_string_equal(first, second);
     assert_int_equal(strncmp(all, "example: imtet ", 15), 0);
     for (int i = 0; command_at(i); i++)
         assert_int_equal(strstr(all, command_at(i)->summary) != NULL, command_at(i)->group != GROUP_NONE);
-    free(first);
-    free(second);
-    free(all);
     expect(2, "did you mean simulate?", "help simulat");
     expect(2, "did you mean optimize?", "--man optimise");
     expect(2, "one command at most", "help simulate building");
@@ -64,14 +60,13 @@ TEST(help_of_a_command_is_the_same_both_ways)
 
 TEST(the_version_says_what_the_program_was_built_from)
 {
-    json_t *o = json_of("--version --json");
+    json_auto_t *o = json_of("--version --json");
     char *line = output_of("--version"), wanted[128];
     snprintf(wanted, sizeof wanted, "imtet %s (%s)\n", json_string_value(json_object_get(o, "version")),
              json_string_value(json_object_get(o, "revision")));
     assert_string_equal(line, wanted);
     assert_non_null(json_string_value(json_object_get(json_object_get(o, "libraries"), "sundials")));
     assert_true(isalpha((unsigned char)json_string_value(json_object_get(o, "compiler"))[0]));
-    json_decref(o);
     free(line);
     expect(2, "nothing but --json", "--version --jsn");
     expect(2, "did you mean --version?", "--versoin");
@@ -94,13 +89,12 @@ static char *shell(const char *format, ...)
 /* Bash replaces what is behind the last = or :. */
 static void expect_offer(const char *words, const char *wanted)
 {
-    char *offer =
+    FREED char *offer =
         shell("bash -c 'source scripts/completion.bash; COMP_LINE=\"%s %s\"; COMP_POINT=${#COMP_LINE}; _imtet; "
               "echo \"${COMPREPLY[*]}\"'",
               getenv("IMTET"), words);
     if (strncmp(offer, wanted, strlen(wanted)) != 0)
         fail_msg("imtet %s: offered '%s', wanted '%s'", words, offer, wanted);
-    free(offer);
 }
 
 TEST(bash_offers_commands_options_keys_and_words)
@@ -126,9 +120,8 @@ TEST(bash_offers_commands_options_keys_and_words)
 /* Skipped where the shell is not on this machine, and for a program that is not to be installed. */
 static void install_for(const char *name)
 {
-    char *found = shell("which %s || true", name);
+    FREED char *found = shell("which %s || true", name);
     const int is_there = found[0] != 0;
-    free(found);
     if (!is_there || access("build/release/libimtet.so", F_OK) != 0 || strstr(getenv("IMTET"), "/build/"))
         skip();
     free(shell("make -s -o imtet install PREFIX=@/opt"));
@@ -165,9 +158,8 @@ TEST(zsh_offers_what_bash_does)
 TEST(what_is_installed_is_gone_again)
 {
     install_for("make");
-    char *left = shell("make -s uninstall PREFIX=@/opt; find @/opt -type f -o -type l");
+    FREED char *left = shell("make -s uninstall PREFIX=@/opt; find @/opt -type f -o -type l");
     assert_string_equal(left, "");
-    free(left);
 }
 
 /* Every row of the table in the documentation is a status of the program and the other way round. */

@@ -24,10 +24,9 @@ static int make_buildings(void **state)
 static Settings scene_of(const char *const sets[])
 {
     Settings s;
-    char *path = in_place("s.ini");
+    FREED char *path = in_place("s.ini");
     settings_defaults(&s);
     CHECK_OK(settings_read(&s, path, NULL, NULL, &err), &err);
-    free(path);
     for (; *sets; sets++)
         CHECK_OK(settings_set(&s, *sets, &err), &err);
     return s;
@@ -56,11 +55,10 @@ static const LadderEffect *effect(const ModelChoice *c, const char *key)
 
 static Measured simulated(const Settings *s, SceneKind kind, const double x[])
 {
-    Problem p;
+    OWNED(problem_close) Problem p;
     SimResult r;
     CHECK_OK(tower_open(&p, s, TOWER_SINGLE, 1, &err), &err);
     CHECK_OK(tower_simulate(&p, 1, &(SimTask){.kind = kind, .x = x}, &r, &err), &err);
-    problem_close(&p);
     return measured(&r);
 }
 
@@ -80,7 +78,7 @@ static void designs_of(const Settings *all, double X[3][DESIGN_VARIABLES_MAX])
 TEST(what_is_chosen_is_within_the_tolerance_of_all_effects_in_every_scene_of_every_design)
 {
     Settings s = scene_of((const char *const[]){"motion.pga_g=0.15", NULL}), all = s;
-    ModelChoice *c = chosen(&s);
+    FREED ModelChoice *c = chosen(&s);
     double X[3][DESIGN_VARIABLES_MAX];
     int n_off = 0;
     for (size_t i = 0; i < c->ladder.n; i++) {
@@ -98,14 +96,13 @@ TEST(what_is_chosen_is_within_the_tolerance_of_all_effects_in_every_scene_of_eve
                 assert_at_most(fabs(ladder_change(&set, &whole, m)),
                                i == 0 ? c->ladder.tolerance[m] : LADDER_TOLERANCE);
         }
-    free(c);
 }
 
 /* Each alone, from the model with all: some scene of the design in which it was found changes by more. */
 TEST(what_is_needed_changes_one_of_the_designs_by_more_than_the_tolerance)
 {
     Settings s = scene_of((const char *const[]){NULL}), all = s;
-    ModelChoice *c = chosen(&s);
+    FREED ModelChoice *c = chosen(&s);
     double X[3][DESIGN_VARIABLES_MAX];
     for (size_t i = 0; i < c->ladder.n; i++)
         CHECK_OK(settings_put(&all, c->ladder.effect[i].key, c->ladder.effect[i].with, &err), &err);
@@ -124,29 +121,26 @@ TEST(what_is_needed_changes_one_of_the_designs_by_more_than_the_tolerance)
             }
         assert_true(!e->is_needed || most > LADDER_TOLERANCE);
     }
-    free(c);
 }
 
 TEST(what_the_settings_give_stays_be_it_the_default)
 {
     Settings s = scene_of((const char *const[]){"building.p_delta=off", "core.foundation=rotation=5.5e11", NULL});
-    ModelChoice *c = chosen(&s);
+    FREED ModelChoice *c = chosen(&s);
     assert_true(effect(c, "building.p_delta")->is_set && effect(c, "core.foundation")->is_set);
     assert_false(effect(c, "core.theory")->is_set);
     assert_int_equal(s.building.p_delta, SWITCH_OFF);
     assert_string_equal(s.core.foundation, "rotation=5.5e11");
-    free(c);
 }
 
 /* Light storeys that stay elastic: their weight softens nothing, and no drift comes near 1 %. */
 TEST(of_a_stiff_building_in_a_weak_motion_neither_p_delta_nor_yielding_is_needed)
 {
     Settings s = scene_of((const char *const[]){"motion.pga_g=0.02", NULL});
-    ModelChoice *c = chosen(&s);
+    FREED ModelChoice *c = chosen(&s);
     assert_false(effect(c, "building.yield_drift")->is_kept);
     assert_same_number(s.building.yield_drift, 0);
     assert_less(effect(c, "building.yield_drift")->most, 0.1);
-    free(c);
 }
 
 TEST(the_end_of_the_record_is_open_where_only_peaks_are_searched_for)
@@ -186,24 +180,21 @@ TEST(any_number_of_threads_chooses_the_same)
 {
     Settings one = scene_of((const char *const[]){"search.threads=1", NULL}), four = one;
     four.search.threads = 4;
-    ModelChoice *a = chosen(&one), *b = chosen(&four);
+    FREED ModelChoice *a = chosen(&one), *b = chosen(&four);
     four.search.threads = 1;
     assert_memory_equal(&one, &four, sizeof one);
     for (size_t i = 0; i < a->ladder.n; i++)
         assert_same_number(a->ladder.effect[i].most, b->ladder.effect[i].most);
     assert_int_equal(a->n_simulations, b->n_simulations);
-    free(a);
-    free(b);
 }
 
 static json_t *model_of(const char *run)
 {
     char name[64];
     snprintf(name, sizeof name, "%s/provenance.json", run);
-    char *text = read_in_place(name);
+    FREED char *text = read_in_place(name);
     json_t *all = json_loads(text, 0, NULL), *model = json_incref(json_object_get(all, "model"));
     json_decref(all);
-    free(text);
     return model;
 }
 
@@ -221,9 +212,8 @@ TEST(a_run_keeps_what_it_has_chosen_and_what_goes_on_is_the_run_that_never_stopp
     Settings s = scene_of((const char *const[]){NULL});
     StudySummary summary;
     Status status = STATUS_STOPPED;
-    char *folder = in_place("parts");
+    FREED char *folder = in_place("parts");
     snprintf(s.run.out, sizeof s.run.out, "%s", folder);
-    free(folder);
     assert_int_equal(study_run(&s, &(StudyOptions){.stop = stop_after, .user = &(int){3}}, &summary, NULL, &err),
                      STATUS_STOPPED);
     assert_non_null(strstr(err.text, "stopped before its model was chosen; nothing is stored"));
@@ -231,16 +221,13 @@ TEST(a_run_keeps_what_it_has_chosen_and_what_goes_on_is_the_run_that_never_stopp
         status = study_run(&s, &(StudyOptions){.stop = stop_after, .user = &(int){k}}, &summary, NULL, &err);
     CHECK_OK(status, &err);
     free(output_of("optimize @/s.ini --out @/whole"));
-    char *a = all_of("whole"), *b = all_of("parts");
+    FREED char *a = all_of("whole"), *b = all_of("parts");
     assert_string_equal(a, b);
-    free(a);
-    free(b);
     json_t *model = model_of("whole"), *confirmed = json_object_get(model, "confirmed");
     assert_less(0, json_array_size(json_object_get(confirmed, "designs")));
-    Run run = run_in("whole");
+    OWNED(run_free) Run run = run_in("whole");
     assert_string_equal(run.settings->core.foundation,
                         json_string_value(json_object_get(json_object_get(model, "settings"), "core.foundation")));
-    run_free(&run);
     json_decref(model);
     expect(65, "building.p_delta is",
            "optimize @/s.ini --out @/whole --set building.p_delta=off --set core.theory=euler_bernoulli");
@@ -253,7 +240,7 @@ TEST(where_a_named_design_needs_more_both_values_and_the_command_are_said)
     Ladder l = {.n = 1, .tolerance = {0.02, 0.02, 0.02}};
     Settings s = scene_of((const char *const[]){"core.theory=euler_bernoulli", NULL});
     double X[3][DESIGN_VARIABLES_MAX];
-    ModelCase *cases;
+    FREED ModelCase *cases;
     size_t n;
     l.effect[0] = (LadderEffect){
         .words = "shear", .key = "core.theory", .with = "timoshenko", .without = "euler_bernoulli", .most = 1};
@@ -265,7 +252,6 @@ TEST(where_a_named_design_needs_more_both_values_and_the_command_are_said)
     more.core.theory = CORE_TIMOSHENKO;
     assert_same_number(cases[0].by_set.value[MEASURE_J1], simulated(&s, SCENE_IMPACT, X[1]).value[MEASURE_J1]);
     assert_same_number(cases[0].by_more.value[MEASURE_J1], simulated(&more, SCENE_IMPACT, X[1]).value[MEASURE_J1]);
-    free(cases);
 }
 
 /* -- presets ------------------------------------------------------------------------------------------------------- */
@@ -275,10 +261,9 @@ static Settings begun(const char *folder)
     Settings s;
     char name[64];
     snprintf(name, sizeof name, "%s/study.ini", folder);
-    char *path = in_place(name);
+    FREED char *path = in_place(name);
     settings_defaults(&s);
     CHECK_OK(settings_read(&s, path, NULL, NULL, &err), &err);
-    free(path);
     return s;
 }
 
@@ -333,9 +318,8 @@ TEST(files_that_are_not_there_and_presets_that_are_none_begin_nothing)
     expect(66, "motion.record: RECORD.AT2: there is no such file", "new @/no --record RECORD.AT2");
     expect(66, "building.model: ", "new @/no --preset devices --set building.model=@/none");
     expect(2, "--preset: device is no preset; did you mean devices?", "new @/no --preset device");
-    char *path = in_place("no");
+    FREED char *path = in_place("no");
     assert_int_equal(access(path, F_OK), -1);
-    free(path);
     free(output_of("new @/plain"));
     const Settings s = begun("plain");
     assert_int_equal(s.sim.model, MODEL_AUTO);

@@ -149,7 +149,7 @@ TEST(reference_directions_are_as_many_as_binomials_say_and_lie_on_the_simplex)
     } cases[] = {{2, 4, 0, 5}, {3, 12, 0, 91}, {7, 3, 1, 84 + 7}, {8, 3, 2, 120 + 36}, {1, 1, 0, 1}};
     for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++) {
         const size_t m = cases[c].m;
-        Directions d;
+        OWNED(directions_free) Directions d;
         CHECK_OK(directions_create(&d, m, cases[c].outer, cases[c].inner, &err), &err);
         assert_int_equal(d.n, cases[c].n);
         for (size_t i = 0; i < d.n; i++) {
@@ -162,7 +162,6 @@ TEST(reference_directions_are_as_many_as_binomials_say_and_lie_on_the_simplex)
             for (size_t j = 0; j < i; j++)
                 assert_memory_not_equal(d.W + i * m, d.W + j * m, m * sizeof *d.W);
         }
-        directions_free(&d);
     }
 }
 
@@ -269,8 +268,8 @@ TEST(selection_keeps_the_wanted_number_the_best_layers_and_the_corners_of_the_fr
     double F[N * M];
     size_t chosen[N], rank[N], scratch[3 * N];
     size_t outer, inner;
-    Directions d;
-    Selection *s;
+    OWNED(directions_free) Directions d;
+    FREED Selection *s;
     directions_choose(M, KEEP, &outer, &inner);
     CHECK_OK(directions_create(&d, M, outer, inner, &err), &err);
     CHECK_OK(selection_create(&s, N, &d, NULL, &err), &err);
@@ -299,8 +298,6 @@ TEST(selection_keeps_the_wanted_number_the_best_layers_and_the_corners_of_the_fr
         assert_at_most(worst_kept, best_left);
     }
     assert_int_equal(selection_select(s, 5, F, NULL, KEEP, &(Random){0}, chosen), 5);
-    free(s);
-    directions_free(&d);
 }
 
 TEST(feasible_designs_survive_before_infeasible_ones)
@@ -308,8 +305,8 @@ TEST(feasible_designs_survive_before_infeasible_ones)
     enum { N = 30, M = 2 };
     double F[N * M], violation[N];
     size_t chosen[N];
-    Directions d;
-    Selection *s;
+    OWNED(directions_free) Directions d;
+    FREED Selection *s;
     CHECK_OK(directions_create(&d, M, 9, 0, &err), &err);
     CHECK_OK(selection_create(&s, N, &d, NULL, &err), &err);
     for (size_t i = 0; i < N; i++) { /* the infeasible ones would dominate */
@@ -322,18 +319,16 @@ TEST(feasible_designs_survive_before_infeasible_ones)
     assert_int_equal(chosen[1], 1);
     for (size_t i = 2; i < 12; i++)
         assert_int_equal(chosen[i], 18 + i);
-    free(s);
-    directions_free(&d);
 }
 
 /* n^2 of them at most: it was n^3. */
 TEST(thousands_of_designs_are_selected_in_seconds)
 {
     enum { M = 7, WANTED = 3000, N = 2 * WANTED };
-    double *F = calloc(N * M, sizeof *F);
+    FREED double *F = calloc(N * M, sizeof *F);
     size_t *selected = calloc(N, sizeof *selected), outer, inner;
-    Directions d;
-    Selection *s;
+    OWNED(directions_free) Directions d;
+    FREED Selection *s;
     Random r = random_stream(1, RANDOM_TEST, 0, 0);
     assert_true(F && selected);
     for (size_t i = 0; i < N; i++) {
@@ -353,9 +348,6 @@ TEST(thousands_of_designs_are_selected_in_seconds)
     const double seconds = (double)(clock() - begun) / CLOCKS_PER_SEC;
     if (seconds > 5.0)
         fail_msg("%.1f s", seconds);
-    free(s);
-    directions_free(&d);
-    free(F);
     free(selected);
 }
 
@@ -421,7 +413,7 @@ TEST(front_flags_equal_a_brute_force_filter_after_every_insertion)
     double F[N * M], G[N], X[N];
     unsigned char ok[N];
     for (uint32_t seed = 0; seed < 20; seed++) {
-        Archive a;
+        OWNED(pareto_archive_free) Archive a;
         CHECK_OK(pareto_archive_init(&a, 3, 1, M, 1, &err), &err);
         coarse_points(seed, N, M, F);
         for (size_t i = 0; i < N; i++) {
@@ -445,7 +437,6 @@ TEST(front_flags_equal_a_brute_force_filter_after_every_insertion)
         assert_int_equal(a.n_failed, 8 + 1);
         assert_int_equal(pareto_archive_find(&a, X + 33), 33);
         assert_int_equal(pareto_archive_find(&a, (const double[]){0.5}), N);
-        pareto_archive_free(&a);
     }
 }
 
@@ -457,8 +448,8 @@ TEST(a_batch_spreads_over_the_directions_instead_of_crowding)
     const double offered[] = {0.5, 0.5, 0.5, 0.5, 1.6, 0.1, 3, 3, 0, 0};
     const double violation[] = {0, 0, 0, 0, 1}, uncertainty[] = {0.1, 0.1, 0.1, 0.2, 0.3};
     unsigned char allowed[] = {1, 1, 1, 1, 1};
-    Directions d;
-    Infill *q;
+    OWNED(directions_free) Directions d;
+    FREED Infill *q;
     CHECK_OK(directions_create(&d, 2, 10, 0, &err), &err);
     CHECK_OK(infill_create(&q, INFILL_PBI, 5, &d, NULL, &err), &err);
     infill_measure(q, 3, rows, front);
@@ -478,8 +469,6 @@ TEST(a_batch_spreads_over_the_directions_instead_of_crowding)
     assert_int_equal(infill_pick(q, allowed), 2);
     assert_int_equal(infill_pick(q, allowed), 0);
     assert_int_equal(infill_pick(q, allowed), 4); /* infeasible most likely, but the one with a gain */
-    free(q);
-    directions_free(&d);
 }
 
 TEST(picks_are_those_of_gains_computed_anew_each_time)
@@ -489,8 +478,8 @@ TEST(picks_are_those_of_gains_computed_anew_each_time)
     size_t rows[N], taken[2 * N];
     for (uint32_t seed = 0; seed < SEEDS; seed++) {
         unsigned char allowed[N], asked[N];
-        Directions d;
-        Infill *lazy, *anew;
+        OWNED(directions_free) Directions d;
+        FREED Infill *lazy, *anew;
         Random r = random_stream(seed, RANDOM_TEST, 1, 0);
         coarse_points(seed, N, M, F);
         for (size_t i = 0; i < N; i++) {
@@ -519,9 +508,6 @@ TEST(picks_are_those_of_gains_computed_anew_each_time)
                 infill_take(lazy, taken[n++]);
             }
         }
-        free(lazy);
-        free(anew);
-        directions_free(&d);
     }
 }
 
@@ -529,7 +515,7 @@ TEST(picks_are_those_of_gains_computed_anew_each_time)
 TEST(spread_directions_have_the_axes_and_keep_apart)
 {
     for (size_t m = 2; m <= 7; m++) {
-        Directions d;
+        OWNED(directions_free) Directions d;
         const size_t n = 40;
         CHECK_OK(directions_spread(&d, m, n, &err), &err);
         double least = INFINITY;
@@ -550,7 +536,6 @@ TEST(spread_directions_have_the_axes_and_keep_apart)
         }
         /* in two objectives 40 on a line of length sqrt(2); in more there is more room */
         assert_less((m == 2 ? 0.35 * sqrt(2.0) / 39 : 0.05), least);
-        directions_free(&d);
     }
 }
 
@@ -559,8 +544,8 @@ TEST(spread_directions_have_the_axes_and_keep_apart)
 TEST(the_lengths_of_rays_measure_the_hypervolume)
 {
     const double front[] = {0, 0.5, 1, 1, 0, 0.5, 0.5, 1, 0}; /* 0..1 in every objective */
-    Directions d;
-    Infill *q;
+    OWNED(directions_free) Directions d;
+    FREED Infill *q;
     CHECK_OK(directions_spread(&d, 3, 300, &err), &err);
     CHECK_OK(infill_create(&q, INFILL_HYPERVOLUME, 2, &d, NULL, &err), &err);
     infill_measure(q, 3, (const size_t[]){0, 1, 2}, front);
@@ -572,8 +557,6 @@ TEST(the_lengths_of_rays_measure_the_hypervolume)
         ratio += pow(one / half, 3.0) / (double)(d.n - 3);
     }
     assert_close(ratio, 8.0, 1e-6);
-    free(q);
-    directions_free(&d);
 }
 
 TEST(the_slope_of_pbi_equals_differences)
@@ -587,8 +570,8 @@ TEST(the_slope_of_pbi_equals_differences)
         for (size_t k = 0; k < M; k++)
             F[i * M + k] = (double)(k + 1) * random_uniform(&r);
     }
-    Directions d;
-    Infill *q;
+    OWNED(directions_free) Directions d;
+    FREED Infill *q;
     CHECK_OK(directions_spread(&d, M, 12, &err), &err);
     CHECK_OK(infill_create(&q, INFILL_PBI, ROWS, &d, NULL, &err), &err);
     infill_measure(q, ROWS, rows, F);
@@ -608,8 +591,6 @@ TEST(the_slope_of_pbi_equals_differences)
             assert_less(fabs(slope[k] - (up - down) / (2 * h)), 1e-6);
         }
     }
-    free(q);
-    directions_free(&d);
 }
 
 /* By either measure the second one's designs add four times as much each, of which it has fewer. */

@@ -19,7 +19,7 @@ static Status parse(Motion *m, const char *text, MotionUnit unit, Err *why)
 static void must_read(const char *text, MotionUnit unit, const char *format)
 {
     static const double want[] = {1, 2, -3, 0};
-    Motion m;
+    OWNED(motion_free) Motion m;
     CHECK_OK(parse(&m, text, unit, &err), &err);
     assert_int_equal(m.n, 4);
     assert_close(m.dt_s, 0.02, 0);
@@ -27,7 +27,6 @@ static void must_read(const char *text, MotionUnit unit, const char *format)
     for (int i = 0; i < 4; i++)
         if (fabs(m.accel[i] - want[i]) > 1e-12)
             fail_msg("sample %d of '%s' is %.17g, wanted %g", i, text, m.accel[i], want[i]);
-    motion_free(&m);
 }
 
 TEST(units_are_found_in_names_and_comments)
@@ -76,7 +75,7 @@ TEST(times_printed_with_few_digits_are_uniform)
         const char *format;
     } CASES[] = {{1.0 / 256, "%.4f"}, {0.005, "%.3f"},       {0.02, "%.2f"}, {0.02, "%g"},
                  {0.0078125, "%g"},   {60.0 / 2999, "%.6f"}, {0.01, "%.3e"}, {0.005, "%.17g"}};
-    char *text = malloc(N * 40);
+    FREED char *text = malloc(N * 40);
     assert_non_null(text);
     for (size_t c = 0; c < sizeof CASES / sizeof *CASES; c++) {
         char *p = text + sprintf(text, "t,a_m_s2\n");
@@ -85,13 +84,11 @@ TEST(times_printed_with_few_digits_are_uniform)
             p += sprintf(p, CASES[c].format, i * CASES[c].dt);
             p += sprintf(p, ",%d\n", i % 3);
         }
-        Motion m;
+        OWNED(motion_free) Motion m;
         CHECK_OK(parse(&m, text, UNIT_FROM_FILE, &err), &err);
         assert_int_equal(m.n, n);
         assert_close(m.dt_s, CASES[c].dt, 1e-5);
-        motion_free(&m);
     }
-    free(text);
 }
 
 TEST(a_sample_missing_anywhere_is_noticed)
@@ -176,23 +173,21 @@ TEST(a_comment_heads_columns_where_it_begins_with_times_or_periods)
     };
     for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
         char text[400];
-        Motion m;
+        OWNED(motion_free) Motion m;
         err = (Err){0};
         snprintf(text, sizeof text, "%s\n0.02,0.5\n0.04,-0.5\n0.06,0.25\n", CASES[i].head);
         const Status s = parse(&m, text, UNIT_M_S2, &err);
         if ((s == STATUS_OK) != !CASES[i].says || (CASES[i].says && !strstr(err.text, CASES[i].says)))
             fail_msg("%s: %s", CASES[i].head, err.text);
-        motion_free(&m);
     }
 }
 
 TEST(a_file_that_is_not_there_is_missing)
 {
-    Motion m;
+    OWNED(motion_free) Motion m;
     assert_int_equal(motion_load(&m, "tests/bad/motion/nowhere.csv", UNIT_FROM_FILE, &err), STATUS_MISSING);
     assert_non_null(strstr(err.text, "nowhere.csv"));
     assert_int_equal(motion_load(&m, "tests/bad/motion", UNIT_FROM_FILE, &err), STATUS_MISSING);
-    motion_free(&m);
 }
 
 TEST(the_benchmark_records_are_read)
@@ -230,13 +225,12 @@ TEST(the_benchmark_records_are_read)
 
 static void says(double pga_g, double stretch, const char *wanted)
 {
-    Motion m;
+    OWNED(motion_free) Motion m;
     char text[MOTION_PEAK_TEXT_MAX];
     CHECK_OK(parse(&m, "t,a_m_s2\n0,1\n0.5,-4.905\n1,2\n", UNIT_FROM_FILE, &err), &err);
     CHECK_OK(motion_prepare(&m, pga_g, stretch, &err), &err);
     motion_peak_text(&m, text);
     assert_string_equal(text, wanted);
-    motion_free(&m);
 }
 
 TEST(the_peak_of_a_motion_is_shown_with_its_scaling)
@@ -249,7 +243,7 @@ TEST(the_peak_of_a_motion_is_shown_with_its_scaling)
 
 TEST(prepare_scales_the_peak_and_stretches_time)
 {
-    Motion m;
+    OWNED(motion_free) Motion m;
     CHECK_OK(parse(&m, "t,a_m_s2\n0,1\n0.5,-4\n1,2\n", UNIT_FROM_FILE, &err), &err);
     CHECK_OK(motion_prepare(&m, 0, 2, &err), &err);
     assert_close(m.accel[1], -4, 0);
@@ -260,18 +254,16 @@ TEST(prepare_scales_the_peak_and_stretches_time)
     assert_close(m.dt_s, 3.1, 0);
     assert_int_equal(motion_prepare(&m, 0.3, 0, &err), STATUS_BAD_DATA);
     assert_int_equal(motion_prepare(&m, NAN, 1, &err), STATUS_BAD_DATA);
-    motion_free(&m);
 }
 
 TEST(a_motion_of_zeros_is_none)
 {
-    Motion m;
+    OWNED(motion_free) Motion m;
     CHECK_OK(parse(&m, "t,a_m_s2\n0,0\n0.5,0\n1,0\n", UNIT_FROM_FILE, &err), &err);
     for (int scaled = 0; scaled < 2; scaled++) {
         assert_int_equal(motion_prepare(&m, 0.3 * scaled, 1, &err), STATUS_BAD_DATA);
         assert_non_null(strstr(err.text, "zero throughout"));
     }
-    motion_free(&m);
 }
 
 /* ---- spectrum ------------------------------------------------------------------------------------------------- */
@@ -399,7 +391,7 @@ TEST(the_answer_of_a_period_does_not_depend_on_those_beside_it)
 {
     enum { N = 11 };
     double T[N], psa[N], alone;
-    Motion m = {.n = 4000, .dt_s = 0.01, .accel = malloc(4000 * sizeof(double))};
+    OWNED(motion_free) Motion m = {.n = 4000, .dt_s = 0.01, .accel = malloc(4000 * sizeof(double))};
     for (size_t i = 0; i < m.n; i++)
         m.accel[i] = sin(0.11 * (double)i) * cos(0.0003 * (double)(i * i));
     for (int i = 0; i < N; i++)
@@ -411,7 +403,6 @@ TEST(the_answer_of_a_period_does_not_depend_on_those_beside_it)
             assert_same_number(psa[i], alone);
         }
     }
-    motion_free(&m);
 }
 
 TEST(the_spectrum_of_a_long_motion_takes_seconds)
@@ -419,7 +410,7 @@ TEST(the_spectrum_of_a_long_motion_takes_seconds)
     enum { N = 121 };
     double T[N], psa[N];
     uint32_t random = 7;
-    Motion m = {.n = 400000, .dt_s = 0.005, .accel = malloc(400000 * sizeof(double))};
+    OWNED(motion_free) Motion m = {.n = 400000, .dt_s = 0.005, .accel = malloc(400000 * sizeof(double))};
     for (size_t i = 0; i < m.n; i++)
         m.accel[i] = (double)(random = random * 1664525u + 1013904223u) / 4294967296.0 - 0.5;
     for (int i = 0; i < N; i++)
@@ -427,7 +418,6 @@ TEST(the_spectrum_of_a_long_motion_takes_seconds)
     const clock_t began = clock();
     spectrum_psa(&m, 0.05, N, T, psa);
     assert_less((double)(clock() - began) / CLOCKS_PER_SEC, 4); /* 0.4 s; one oscillator after the other 7 s */
-    motion_free(&m);
 }
 
 TEST(short_and_long_periods_reach_their_limits)

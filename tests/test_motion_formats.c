@@ -84,7 +84,7 @@ static void check_specimen(const char *file, const char *format, const MotionHow
                            double tolerance)
 {
     char path[128];
-    Motion m;
+    OWNED(motion_free) Motion m;
     specimen_path(file, path);
     CHECK_OK(motion_read(&m, path, how, &err), &err);
     const double want = 0.01 * PEAK_GAL[component];
@@ -94,7 +94,6 @@ static void check_specimen(const char *file, const char *format, const MotionHow
                  m.accel[PEAK_AT], want);
     if (name)
         assert_string_equal(m.channel, name);
-    motion_free(&m);
 }
 
 TEST(a_specimen_of_every_format_is_read_to_its_step_length_and_peak)
@@ -213,10 +212,9 @@ TEST(line_ends_and_blanks_at_line_ends_do_not_matter)
                 t = changed(t, "\r", "", 1);
             t = changed(t, "\n", ends[k], 1);
             t.text[t.length++] = 0x1a; /* the end mark of DOS */
-            Motion m;
+            OWNED(motion_free) Motion m;
             m = accept_text(SPECIMENS[i].file, t, &(MotionHow){.channel = SPECIMENS[i].channel});
             assert_int_equal(m.n, N_SAMPLES);
-            motion_free(&m);
         }
 }
 
@@ -367,7 +365,7 @@ TEST(a_specimen_wrong_in_one_way_is_refused_with_line_and_reason)
     int n_accepted = 0;
     for (size_t i = 0; i < sizeof WRONG / sizeof *WRONG; i++) {
         Text t = changed(read_specimen(WRONG[i].file), WRONG[i].from, WRONG[i].to, 0);
-        Motion m;
+        OWNED(motion_free) Motion m;
         err = (Err){0};
         const Status s = motion_parse(&m, WRONG[i].file, t.text, t.length, &FIRST, &err);
         if (s != STATUS_BAD_DATA || m.accel || strncmp(err.text, WRONG[i].file, strlen(WRONG[i].file)) != 0 ||
@@ -375,7 +373,6 @@ TEST(a_specimen_wrong_in_one_way_is_refused_with_line_and_reason)
             print_error("%s with '%s': the message should contain '%s' and is '%s'\n", WRONG[i].file, WRONG[i].to,
                         WRONG[i].says, s == STATUS_OK ? "(none)" : err.text);
         n_accepted += s != STATUS_BAD_DATA || !strstr(err.text, WRONG[i].says);
-        motion_free(&m);
         free(t.text);
     }
     assert_int_equal(n_accepted, 0);
@@ -541,10 +538,9 @@ TEST(a_channel_must_be_chosen_where_there_are_several)
 TEST(a_column_of_velocities_is_not_taken_for_an_acceleration)
 {
     static const char text[] = "time_s,accel_m_s2,velocity\n0.00,1.0,0.0\n0.02,2.0,0.1\n";
-    Motion m = there(text, &(MotionHow){0});
+    OWNED(motion_free) Motion m = there(text, &(MotionHow){0});
     assert_string_equal(m.channel, "accel_m_s2");
     assert_close(m.accel[1], 2, 0);
-    motion_free(&m);
 }
 
 TEST(unequal_steps_are_resampled_by_straight_lines_only_when_asked)
@@ -552,7 +548,7 @@ TEST(unequal_steps_are_resampled_by_straight_lines_only_when_asked)
     refused("irregular.csv", &(MotionHow){0}, "breaks the uniform step");
     refused("irregular.csv", &(MotionHow){.dt_s = 1e-9}, "would make");
     static const char text[] = "t,a_m_s2\n0,0\n0.1,1\n0.3,3\n0.4,0\n1.0,6\n";
-    Motion m = there(text, &(MotionHow){.dt_s = 0.05});
+    OWNED(motion_free) Motion m = there(text, &(MotionHow){.dt_s = 0.05});
     assert_int_equal(m.n, 21);
     assert_string_equal(m.processed, "resampled every 0.05 s by straight lines");
     for (size_t i = 0; i < m.n; i++) {
@@ -560,16 +556,14 @@ TEST(unequal_steps_are_resampled_by_straight_lines_only_when_asked)
         const double want = t < 0.3 ? 10 * t : t < 0.4 ? 3 - 30 * (t - 0.3) : 10 * (t - 0.4);
         assert_less(fabs(m.accel[i] - want), 1e-12);
     }
-    motion_free(&m);
 }
 
 TEST(an_equal_step_is_left_alone_by_a_request_to_resample)
 {
-    Motion m;
+    OWNED(motion_free) Motion m;
     CHECK_OK(motion_read(&m, "tests/motion/two_columns.txt", &(MotionHow){.dt_s = 0.5}, &err), &err);
     assert_close(m.dt_s, DT, 0);
     assert_string_equal(m.processed, "");
-    motion_free(&m);
 }
 
 TEST(the_step_of_a_bare_column_can_be_given_and_of_no_other)
@@ -633,7 +627,7 @@ static Text mutated(const Text *t, uint64_t *random)
 
 static void check_mutant(const char *file, const Text *t, const MotionHow *how)
 {
-    Motion m;
+    OWNED(motion_free) Motion m;
     err = (Err){0};
     const Status s = motion_parse(&m, file, t->text, t->length, how, &err);
     if (s == STATUS_OK) {
@@ -646,7 +640,6 @@ static void check_mutant(const char *file, const Text *t, const MotionHow *how)
         assert_null(m.accel);
         assert_same_number(strncmp(err.text, file, strlen(file)), 0);
     }
-    motion_free(&m);
 }
 
 TEST(five_thousand_mutants_are_read_or_refused)
@@ -686,7 +679,7 @@ TEST(a_mutated_binary_file_or_archive_is_read_or_refused)
 
 TEST(the_offset_of_a_recorder_is_subtracted_and_said)
 {
-    Motion m;
+    OWNED(motion_free) Motion m;
     CHECK_OK(motion_read(&m, "tests/motion/one.knet", &(MotionHow){0}, &err), &err);
     double sum = 0;
     for (size_t i = 0; i < m.n; i++)
@@ -694,7 +687,6 @@ TEST(the_offset_of_a_recorder_is_subtracted_and_said)
     assert_at_most(fabs(sum), 1e-12 * (double)m.n);
     assert_string_equal(m.processed, "mean of 3.248 cm_s2 subtracted"); /* 5123 counts of 3920/6182761 gal */
     assert_string_equal(m.warning, "");
-    motion_free(&m);
 }
 
 /* The header's 123.4 gal written as another. */
@@ -753,7 +745,7 @@ TEST(columns_without_names_are_asked_about_and_joined_only_where_a_count_fits)
         {"! units: m/s2\n80 0.01\n", NULL, NULL, 80, 1},
     };
     for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
-        Motion m;
+        OWNED(motion_free) Motion m;
         err = (Err){0};
         Text t = rows_of(CASES[i].first, 20, 4);
         const Status s = motion_parse(&m, "rows", t.text, t.length, &(MotionHow){.channel = CASES[i].channel}, &err);
@@ -767,7 +759,6 @@ TEST(columns_without_names_are_asked_about_and_joined_only_where_a_count_fits)
             assert_close(m.dt_s, 0.01, 1e-15);
             assert_close(m.accel[1], sin(CASES[i].second), 1e-10);
         }
-        motion_free(&m);
         free(t.text);
     }
 }
@@ -780,7 +771,7 @@ TEST(first_rows_of_number_and_step_are_no_samples)
     } CASES[] = {{"A record of somewhere\n30 0.02\n", 1}, {"30\n0.02\n", 1}, {"30\n", 1}, {"31 0.02\n", 0}};
     for (size_t i = 0; i < 2 * sizeof CASES / sizeof *CASES; i++) {
         const int width = (int)(i & 1) + 1, in_two = width == 2 && strcmp(CASES[i / 2].first, "30\n0.02\n") == 0;
-        Motion m;
+        OWNED(motion_free) Motion m;
         err = (Err){0};
         Text t = {NULL, 0};
         FILE *f = open_memstream(&t.text, &t.length);
@@ -801,7 +792,6 @@ TEST(first_rows_of_number_and_step_are_no_samples)
             assert_int_equal(s, STATUS_BAD_DATA);
             assert_non_null(strstr(err.text, "if that line states the number of samples, 30 lines follow it"));
         }
-        motion_free(&m);
         free(t.text);
     }
 }
@@ -830,7 +820,7 @@ TEST(an_unknown_format_is_said_to_be_unknown_and_its_first_line_is_quoted)
 TEST(the_location_tells_the_channels_of_a_building_apart)
 {
     Text t = {NULL, 0};
-    Motion m;
+    OWNED(motion_free) Motion m;
     FILE *f = open_memstream(&t.text, &t.length);
     assert_non_null(f);
     for (int k = 1; k <= 12; k++) {
@@ -851,7 +841,6 @@ TEST(the_location_tells_the_channels_of_a_building_apart)
         fail_msg("%s", err.text);
     m = accept_text("building", t, &(MotionHow){.channel = "90 Deg, Roof"});
     assert_string_equal(m.channel, "90 Deg, Roof");
-    motion_free(&m);
 }
 
 TEST(quoted_cells_are_read)
@@ -931,7 +920,7 @@ TEST(every_format_with_a_peak_in_its_header_is_checked_against_it)
     for (size_t i = 0; i < sizeof PEAKS / sizeof *PEAKS; i++)
         for (int refused_ = 0; refused_ < 2; refused_++) {
             Text t = changed(read_specimen(PEAKS[i].file), PEAKS[i].from, refused_ ? PEAKS[i].by_8 : PEAKS[i].by_2, 0);
-            Motion m;
+            OWNED(motion_free) Motion m;
             err = (Err){0};
             const Status status = motion_parse(&m, PEAKS[i].file, t.text, t.length, &FIRST, &err);
             if (status != (refused_ ? STATUS_BAD_DATA : STATUS_OK) ||
@@ -939,7 +928,6 @@ TEST(every_format_with_a_peak_in_its_header_is_checked_against_it)
                 (refused_ && !strstr(err.text, "more than 5 % apart")))
                 fail_msg("%s, %d %%: status %d, '%s'", PEAKS[i].file, refused_ ? 8 : 2, status,
                          refused_ ? err.text : m.warning);
-            motion_free(&m);
             free(t.text);
         }
 }
@@ -961,13 +949,12 @@ TEST(the_extremes_in_an_smc_header_are_checked)
         write_over(at - 1, by_8 ? "-1.332720E+02 " : "-1.258680E+02 ");
         at = strstr(strstr(at, "1.7000000E+38") + 1, "1.7000000E+38");
         write_over(at, "7.8200000E+01");
-        Motion m;
+        OWNED(motion_free) Motion m;
         err = (Err){0};
         const Status status = motion_parse(&m, "one.smc", t.text, t.length, &FIRST, &err);
         assert_int_equal(status, by_8 ? STATUS_BAD_DATA : STATUS_OK);
         assert_non_null(
             strstr(by_8 ? err.text : m.warning, by_8 ? "its header says 133.27" : "its header says 125.87"));
-        motion_free(&m);
         free(t.text);
     }
 }
@@ -990,10 +977,9 @@ TEST(decimal_commas_are_read_whatever_parts_the_columns)
         "acceleration (in m/s2)\n3 0,01\n3,1\n0,5\n-1,0\n",
     };
     for (size_t i = 0; i < sizeof TEXTS / sizeof TEXTS[0]; i++) {
-        Motion m = there(TEXTS[i], &(MotionHow){0});
+        OWNED(motion_free) Motion m = there(TEXTS[i], &(MotionHow){0});
         if (m.n != 3 || fabs(m.dt_s - 0.01) > 1e-15 || m.accel[0] != 3.1 || m.accel[1] != 0.5 || m.accel[2] != -1)
             fail_msg("%s: %zu samples every %g s: %g %g", TEXTS[i], m.n, m.dt_s, m.accel[0], m.accel[1]);
-        motion_free(&m);
     }
 }
 
@@ -1059,7 +1045,7 @@ TEST(a_unit_counts_where_it_is_stated_and_is_asked_for_elsewhere)
 TEST(a_long_line_and_many_records_take_no_square_of_their_length)
 {
     enum { COLUMNS = 1 << 20 };
-    char *row = malloc(2 * COLUMNS + 16);
+    FREED char *row = malloc(2 * COLUMNS + 16);
     const clock_t began = clock();
     assert_non_null(row);
     for (int with_names = 0; with_names < 2; with_names++) {
@@ -1069,7 +1055,6 @@ TEST(a_long_line_and_many_records_take_no_square_of_their_length)
         memcpy(p, with_names ? "a\n1,2,\n" : "0\n1 2\n", 7);
         assert_int_equal(motion_parse(&(Motion){0}, "row", row, strlen(row), &FIRST, &err), STATUS_BAD_DATA);
     }
-    free(row);
     Text t = repeated(read_specimen("three.mseed"), 4096);
     refuse("six.mseed", t, &FIRST, "more than 128 channels");
     t = repeated((Text){strdup("\n"), 1}, 1 << 20);
@@ -1139,9 +1124,8 @@ TEST(numbers_of_samples_are_no_seconds)
         assert_close(m.dt_s, 0.02, 0);
         motion_free(&m);
     }
-    Motion m = there("time_s,a_m_s2\n0,1\n1,2\n2,-3\n", &(MotionHow){0});
+    OWNED(motion_free) Motion m = there("time_s,a_m_s2\n0,1\n1,2\n2,-3\n", &(MotionHow){0});
     assert_close(m.dt_s, 1, 0);
-    motion_free(&m);
 }
 
 TEST(the_column_of_times_is_found_by_its_name)
@@ -1150,10 +1134,9 @@ TEST(the_column_of_times_is_found_by_its_name)
                                         "acc (g) t [s]\n0.1 0\n0.2 0.01\n-.3 0.02\n",
                                         "NS_g;Time (sec);EW_g\n.1;0;1\n.2;.01;2\n-.3;.02;3\n"};
     for (size_t i = 0; i < sizeof TEXTS / sizeof TEXTS[0]; i++) {
-        Motion m = there(TEXTS[i], &FIRST);
+        OWNED(motion_free) Motion m = there(TEXTS[i], &FIRST);
         assert_close(m.dt_s, 0.01, 1e-15);
         assert_close(m.accel[2], -.3 * 9.81, 1e-12);
-        motion_free(&m);
     }
     expect_refusal("acc_g,time_ms\n0.1,0\n0.2,10\n", "the column of times is 'time_ms'; times must be in seconds");
 }
@@ -1167,9 +1150,8 @@ TEST(kiknet_numbers_are_directions_and_what_is_no_direction_is_refused)
         char direction[32];
         snprintf(direction, sizeof direction, "Dir.              %d", k + 1);
         Text t = changed(read_specimen("one.kiknet"), "Dir.              5", direction, 0);
-        Motion m = accept_text("one.kiknet", t, &(MotionHow){0});
+        OWNED(motion_free) Motion m = accept_text("one.kiknet", t, &(MotionHow){0});
         assert_string_equal(m.channel, NAMES[k]);
-        motion_free(&m);
     }
     for (int k = 0; k < 2; k++) {
         Text t =
@@ -1202,11 +1184,11 @@ TEST(the_body_of_a_file_of_three_components_is_asked_about_and_not_joined)
 
 TEST(a_step_in_the_first_line_above_words_is_found)
 {
+    OWNED(motion_free)
     Motion m = there("Time Step: 0.005\nAcceleration (g)\n0.0\n0.01\n-0.02\n0.005\n", &(MotionHow){0});
     assert_close(m.dt_s, 0.005, 1e-15);
     assert_int_equal(m.n, 4);
     assert_close(m.accel[2], -0.02 * 9.81, 1e-12);
-    motion_free(&m);
 }
 
 TEST(names_too_long_for_a_message_lose_their_middle)
@@ -1236,13 +1218,12 @@ static Text table_below(const char *header)
 /* NULL: read to its samples in the unit of how; else refused with these words. */
 static void expect(const char *header, const MotionHow *how, const char *says)
 {
-    Motion m;
+    OWNED(motion_free) Motion m;
     err = (Err){0};
     Text t = table_below(header);
     const Status s = motion_parse(&m, "there", t.text, t.length, how, &err);
     if (says ? s != STATUS_BAD_DATA || !strstr(err.text, says) : s != STATUS_OK || m.n != 50 || m.dt_s != 0.01)
         fail_msg("%s: '%s' and not '%s'", header, s == STATUS_OK ? "(read)" : err.text, says ? says : "(read)");
-    motion_free(&m);
     free(t.text);
 }
 
@@ -1369,11 +1350,10 @@ TEST(a_stated_foreign_quantity_is_not_overruled_by_an_option)
     refuse("there", t, &(MotionHow){.unit = UNIT_M_S2, .channel = "1"},
            "the unit 'M/S' of its acceleration is not known");
     const MotionHow gain = {.channel = "1", .unit = UNIT_COUNTS, .counts_per_m_s2 = 100};
-    Motion m;
+    OWNED(motion_free) Motion m;
     t = changed(read_specimen("three.slist"), "FLOAT, cm/s**2", "FLOAT, ADC", 1);
     m = accept_text("there", t, &gain);
     assert_close(m.accel[PEAK_AT], 0.01 * PEAK_GAL[0], 1e-6);
-    motion_free(&m);
 }
 
 TEST(two_units_in_one_file_are_refused)
@@ -1398,23 +1378,21 @@ TEST(what_other_programs_write_is_read)
         {"simcenter.json", "\"dT\"", "\"factor\": 2.5, \"dT\"", "1", "multiplied by the factor", 2.5},
     };
     for (size_t i = 0; i < sizeof CASES / sizeof CASES[0]; i++) {
-        Motion m;
+        OWNED(motion_free) Motion m;
         Text t = changed(read_specimen(CASES[i].file), CASES[i].from, CASES[i].to, 0);
         m = accept_text("there", t, &(MotionHow){.channel = CASES[i].channel});
         assert_int_equal(m.n, N_SAMPLES);
         assert_close(m.accel[PEAK_AT], 0.01 * PEAK_GAL[0] * CASES[i].factor, 1e-9);
         assert_non_null(strstr(m.warning, CASES[i].warning));
-        motion_free(&m);
     }
     static const char *const TABLES[] = {
         ",time_s,acc_m_s2\n0,0.00,1\n1,0.01,2\n2,0.02,-3\n", "i,time_s,acc_m_s2\n0,0.00,1\n1,0.01,2\n2,0.02,-3\n",
         "npts=3 dt=0.01 units=m/s2\n1\n2\n-3\n", "npts= 3 dt= 0.01 units= m/s2\n1 2\n-3\n",
         "npts=3, dt=0.01, units=m/s2\n1 2 -3\n"};
     for (size_t i = 0; i < sizeof TABLES / sizeof TABLES[0]; i++) {
-        Motion m = there(TABLES[i], &(MotionHow){0});
+        OWNED(motion_free) Motion m = there(TABLES[i], &(MotionHow){0});
         assert_true(m.n == 3 && m.accel[0] == 1 && m.accel[1] == 2 && m.accel[2] == -3);
         assert_close(m.dt_s, 0.01, 1e-15);
-        motion_free(&m);
     }
 }
 
@@ -1423,7 +1401,7 @@ TEST(rows_with_a_shorter_last_one_are_one_motion_where_the_step_is_given)
 {
     for (int width = 5; width <= 8; width += 3)
         for (int with_word = 0; with_word < 2; with_word++) {
-            Motion m;
+            OWNED(motion_free) Motion m;
             Text t = rows_of("", 20, width);
             t.length -= 30; /* two numbers */
             memcpy(t.text + t.length, with_word ? "\nend\n" : "\n", with_word ? 6 : 2);
@@ -1433,7 +1411,6 @@ TEST(rows_with_a_shorter_last_one_are_one_motion_where_the_step_is_given)
             assert_true(m.n < (size_t)(20 * width) && m.n >= (size_t)(20 * width - 3));
             for (size_t k = 0; k + 1 < m.n; k++)
                 assert_close(m.accel[k], sin((double)k), 1e-10);
-            motion_free(&m);
             refuse("rows", t, &(MotionHow){.unit = UNIT_M_S2},
                    "and its step ('# dt = 0.01 s', or --set motion.dt_s=0.01)");
         }
@@ -1444,13 +1421,12 @@ TEST(a_record_that_its_agency_corrected_is_not_called_uncorrected)
     static const char *const CORRECTED[] = {"three.csmip.v2", "three.v2a", "three.cosmos.v2", "one.smc", "isesd.cor"};
     static const char *const RAW[] = {"three.csmip.v1", "three.v1a", "one.cosmos.v1", "one.csmnc", "equals.at2"};
     for (int i = 0; i < 10; i++) {
-        Motion m;
+        OWNED(motion_free) Motion m;
         char path[128];
         specimen_path(i < 5 ? CORRECTED[i] : RAW[i - 5], path);
         CHECK_OK(motion_read(&m, path, &FIRST, &err), &err);
         if (m.is_corrected != (i < 5))
             fail_msg("%s: %d", path, m.is_corrected);
-        motion_free(&m);
     }
 }
 

@@ -114,26 +114,23 @@ static int code_of(pid_t pid)
 static void expect_code(pid_t pid, int wanted)
 {
     const int code = code_of(pid);
-    char *said = read_in_place("said");
+    FREED char *said = read_in_place("said");
     if (code != wanted)
         fail_msg("exit %d, wanted %d: %s", code, wanted, said);
-    free(said);
 }
 
 static void expect_said(const char *words)
 {
-    char *said = read_in_place("said");
+    FREED char *said = read_in_place("said");
     if (!strstr(said, words))
         fail_msg("wanted: %s\nsaid: %s", words, said);
-    free(said);
 }
 
 static void expect_not_said(const char *words)
 {
-    char *said = read_in_place("said");
+    FREED char *said = read_in_place("said");
     if (strstr(said, words))
         fail_msg("said: %s", said);
-    free(said);
 }
 
 static void assert_same_text(char *first, char *second, const char *a, const char *b, const char *what)
@@ -166,14 +163,13 @@ static pid_t process_of(pid_t mpirun, int rank)
 
 static size_t lines_in(const char *name)
 {
-    char *path = in_place(name);
+    FREED char *path = in_place(name);
     size_t n = 0;
     FILE *f = fopen(path, "r");
     for (int c; f && (c = fgetc(f)) != EOF;)
         n += c == '\n';
     if (f)
         fclose(f);
-    free(path);
     return n;
 }
 
@@ -295,9 +291,8 @@ TEST(an_isolated_simulation_that_crashes_ends_its_design_alone_on_a_rank_too)
         n += signal_child_of(rank[k % 2], "KILL");
     }
     expect_code(pid, 0);
-    char *all = all_of("shot");
+    FREED char *all = all_of("shot");
     assert_non_null(strstr(all, "its process ended: Killed"));
-    free(all);
 }
 
 TEST(other_commands_give_their_tasks_to_the_ranks)
@@ -442,11 +437,10 @@ TEST(a_simulator_that_does_not_answer_is_a_timeout_on_a_rank_that_lives)
                                "objectives = 2\ntimeout_s = 0.5\n[search]\nmax_evals = 12\ninitial = 12\n"
                                "population = 12\nthreads = 1\n");
     expect_code(launch(4, "optimize @/deaf.ini --out @/deaf"), 0);
-    char *all = all_of("deaf");
+    FREED char *all = all_of("deaf");
     int n = 0;
     for (const char *at = all; (at = strstr(at, ",timeout,")); at++)
         n++;
-    free(all);
     assert_int_equal(n, 4);
 }
 
@@ -580,9 +574,8 @@ TEST(of_a_command_without_evaluations_only_rank_0_goes_on)
     const pid_t mpirun = launch(3, "serve @/small");
     int n = 0;
     for (int i = 0; i < 200; i++) {
-        char *said = read_in_place("said");
+        FREED char *said = read_in_place("said");
         const int serves = strstr(said, "Ctrl-C") != NULL;
-        free(said);
         if ((n = ranks_of(mpirun, pid)) == 1 && serves)
             break;
         rest(0.1);

@@ -29,17 +29,17 @@ static size_t named_of(const Run *run, size_t rows[])
 /* J1, J2, J3 by the preset `accuracy`. */
 static void simulate(long id, const char *accuracy, double j[3])
 {
-    json_t *o = json_of("simulate @/run/settings.ini --json --set sim.accuracy=%s --design @/run:%ld", accuracy, id);
+    json_auto_t *o =
+        json_of("simulate @/run/settings.ini --json --set sim.accuracy=%s --design @/run:%ld", accuracy, id);
     j[0] = number(o, "j1_m");
     j[1] = number(o, "j2_m");
     j[2] = number(o, "j3_g");
-    json_decref(o);
 }
 
 /* At `coarse`, as the search took them, some of these designs miss what `standard` promises. */
 TEST(what_a_study_names_agrees_with_fine_or_says_by_how_much_it_may_not)
 {
-    Run run = run_in("run");
+    OWNED(run_free) Run run = run_in("run");
     size_t rows[OBJECTIVES_MAX + 1];
     const size_t all = named_of(&run, rows), n = SANITIZED ? 1 : 5; /* `fine` takes seconds */
     int missed_before = 0;
@@ -56,13 +56,12 @@ TEST(what_a_study_names_agrees_with_fine_or_says_by_how_much_it_may_not)
         }
     }
     assert_true(missed_before > 0 || SANITIZED);
-    run_free(&run);
 }
 
 /* Unless the command line says by which accuracy. */
 TEST(a_design_of_a_run_is_simulated_by_the_steps_that_the_run_knows_it_by)
 {
-    Run run = run_in("run");
+    OWNED(run_free) Run run = run_in("run");
     const Evaluation *e = run.finer.row;
     const double wanted = run_f(&run, run_find(&run, e->id))[2];
     char words[300];
@@ -75,12 +74,11 @@ TEST(a_design_of_a_run_is_simulated_by_the_steps_that_the_run_knows_it_by)
     o = json_of("%s", words);
     assert_true(number(o, "j3_g") != wanted);
     json_decref(o);
-    run_free(&run);
 }
 
 TEST(errors_are_columns_of_the_files_and_empty_where_they_are_not_known)
 {
-    Run run = run_in("run");
+    OWNED(run_free) Run run = run_in("run");
     char *all = output_of("export @/run --all --csv -"), *front = read_in_place("run/front.csv"), head[64], *row;
     size_t n_known = 0;
     assert_non_null(strstr(front, ",err_j1_m,err_j2_m,err_j3_g,"));
@@ -98,15 +96,14 @@ TEST(errors_are_columns_of_the_files_and_empty_where_they_are_not_known)
     assert_true(n_known >= 2 && n_known <= run.finer.n);
     free(all);
     free(front);
-    run_free(&run);
 }
 
 TEST(choose_marks_what_cannot_be_predicted)
 {
-    Run run = run_in("run");
+    OWNED(run_free) Run run = run_in("run");
     size_t n_marked = 0, n_reasons = 0, i;
     json_t *o = json_of("choose @/run --json"), *pick;
-    char *said = output_of("choose @/run");
+    FREED char *said = output_of("choose @/run");
     json_array_foreach(json_object_get(o, "designs"), i, pick)
     {
         const long id = json_integer_value(json_object_get(pick, "id"));
@@ -121,14 +118,12 @@ TEST(choose_marks_what_cannot_be_predicted)
         n_marked++;
     assert_int_equal(n_marked > 0, n_reasons > 0);
     json_decref(o);
-    free(said);
-    run_free(&run);
 }
 
 /* A simulation has five copies of the design, the run up to eight. */
 TEST(simulate_says_no_less_of_what_cannot_be_predicted_than_the_run_knows)
 {
-    Run run = run_in("run");
+    OWNED(run_free) Run run = run_in("run");
     int n_unpredictable = 0;
     for (size_t i = 0; i < run.finer.n; i++) {
         const size_t row = run_find(&run, run.finer.row[i].id);
@@ -143,7 +138,6 @@ TEST(simulate_says_no_less_of_what_cannot_be_predicted_than_the_run_knows)
     }
     if (!n_unpredictable)
         print_message("skipped: every design that the run names can be predicted\n");
-    run_free(&run);
 }
 
 /* Three designs of two objectives: the second was on the front until the first came, which was better by its error. */
@@ -180,7 +174,7 @@ TEST(a_design_whose_better_values_are_worse_leaves_the_front_and_what_it_hid_is_
 TEST(a_run_that_goes_on_names_anew)
 {
     char *said = output_of(STUDY "80"), wanted[64];
-    Run run = run_in("run");
+    OWNED(run_free) Run run = run_in("run");
     size_t rows[OBJECTIVES_MAX + 1];
     snprintf(wanted, sizeof wanted, "refined with smaller steps: %zu designs, ", run.finer.n);
     assert_non_null(strstr(said, wanted));
@@ -189,19 +183,16 @@ TEST(a_run_that_goes_on_names_anew)
     for (size_t i = 0; i < n; i++)
         assert_non_null(run.table.row[rows[i]].err);
     assert_at_most(run.finer.n, 3 * (n + 4));
-    run_free(&run);
-    char *before = read_in_place("run/front.csv");
+    FREED char *before = read_in_place("run/front.csv");
     free(output_of("optimize @/run"));
-    char *after = read_in_place("run/front.csv");
+    FREED char *after = read_in_place("run/front.csv");
     assert_string_equal(before, after);
-    free(before);
-    free(after);
 }
 
 TEST(what_polishing_brings_to_the_front_is_known_where_it_is_named)
 {
     free(output_of("polish @/run --design best_j2_m --improve j2_m --keep mcore_kg=1 --max-evals 60"));
-    Run run = run_in("run");
+    OWNED(run_free) Run run = run_in("run");
     size_t rows[OBJECTIVES_MAX + 1];
     const size_t n = named_of(&run, rows);
     int has_joined = 0;
@@ -210,7 +201,6 @@ TEST(what_polishing_brings_to_the_front_is_known_where_it_is_named)
     for (size_t i = 0; i < n && has_joined; i++)
         assert_non_null(run.table.row[rows[i]].err);
     assert_true(has_joined);
-    run_free(&run);
 }
 
 static int stop_after(void *user)
@@ -230,10 +220,9 @@ TEST(what_an_interrupted_study_names_is_known_too)
     int left = 40;
     assert_int_equal(study_run(&s, &(StudyOptions){.stop = stop_after, .user = &left}, &summary, NULL, &err),
                      STATUS_STOPPED);
-    Run run = run_in("run-cut");
+    OWNED(run_free) Run run = run_in("run-cut");
     assert_non_null(run.table.row[run_knee(&run)].err);
     assert_non_null(run.table.row[run_best(&run, 0)].err);
-    run_free(&run);
 }
 
 SUITE(make_run, clear_place)

@@ -68,7 +68,7 @@ TEST(joined_and_alone_the_masses_have_their_closed_forms)
 TEST(three_floors_meet_three_floors_and_none_above_a_lower_neighbour)
 {
     const double x[] = {0.004, 0.009, 0.012};
-    Motion motion;
+    OWNED(motion_free) Motion motion;
     CHECK_OK(motion_load(&motion, "builtin:elcentro-like", UNIT_FROM_FILE, &err), &err);
     write_storeys_in_place("three", "4,2e5,2e8\n3.5,2e5,1.6e8\n3.5,1.5e5,1.1e8\n");
     write_storeys_in_place("stiff", "4,2.2e5,9e8\n3.5,2.1e5,7e8\n3.5,1.6e5,5e8\n");
@@ -93,14 +93,13 @@ TEST(three_floors_meet_three_floors_and_none_above_a_lower_neighbour)
         assert_close(fast.edcs_pct, cvode.edcs_pct, 2e-3);
         assert_close(fast.forces.core_base_shear_n, cvode.forces.core_base_shear_n, 1e-2); /* as points are spaced */
     }
-    motion_free(&motion);
 }
 
 /* The same two with exchanged roles: what one says of itself the other says of its neighbour. */
 TEST(either_building_says_the_same_of_the_other)
 {
     const double x[] = {0.004, 0.009, 0.012};
-    Motion motion;
+    OWNED(motion_free) Motion motion;
     CHECK_OK(motion_load(&motion, "builtin:elcentro-like", UNIT_FROM_FILE, &err), &err);
     for (int i = 0; i < 2 * ENGINE_COUNT; i++) {
         const SceneKind kind = i % 2 ? SCENE_RIGID : SCENE_IMPACT;
@@ -134,19 +133,17 @@ TEST(either_building_says_the_same_of_the_other)
         assert_close(r[0].edcs_pct + r[1].edcs_pct,
                      100 * (r[0].damped_core_j + r[0].damped_building_j) / r[0].input_energy_j, least);
     }
-    motion_free(&motion);
 }
 
 TEST(a_neighbour_out_of_reach_is_not_felt)
 {
     const double far[] = {5, 5, 5};
-    Motion motion;
+    OWNED(motion_free) Motion motion;
     CHECK_OK(motion_load(&motion, "builtin:elcentro-like", UNIT_FROM_FILE, &err), &err);
     const SceneOptions o = pair_of("three", "stiff", ENGINE_FAST);
     const SimResult apart = simulate(&o, SCENE_IMPACT, &motion, far), alone = simulate(&o, SCENE_NO_CORE, &motion, far);
     assert_close(apart.j1_m, alone.j1_m, 1e-6);
     assert_close(apart.j3_g, alone.j3_g, 1e-5);
-    motion_free(&motion);
 }
 
 #define CHECK_PAIR "check configs/quick.ini --set building.model=@/three --set core.model=@/"
@@ -167,11 +164,10 @@ TEST(the_example_of_neighbours_is_searched_by_its_gaps_alone)
 {
     free(output_of("optimize configs/neighbours.ini --out @/run --threads 2 --max-evals 24 --set search.initial=12 "
                    "--set search.population=12 --set search.polish=0"));
-    char *front = read_in_place("run/front.csv");
+    FREED char *front = read_in_place("run/front.csv");
     static const char HEADER[] = "id,gap_right_01_m,gap_right_02_m,gap_right_03_m,gap_right_04_m,gap_right_05_m,"
                                  "gap_right_06_m,j1_m,j2_m,j3_g";
     assert_int_equal(strncmp(front, HEADER, sizeof HEADER - 1), 0);
-    free(front);
     free(output_of("report @/run"));
     free(output_of("building configs/neighbours.ini --json"));
     free(output_of("evaluate @/run --design knee"));

@@ -122,7 +122,7 @@ static void insert_noisy(Archive *a, uint32_t seed, int settle_often)
 
 TEST(a_design_has_the_mean_and_the_deviation_of_its_answers)
 {
-    Archive a;
+    OWNED(pareto_archive_free) Archive a;
     insert_noisy(&a, 5, 0);
     assert_int_equal(a.n_replicates, 60);
     assert_int_equal(a.n_usable, 60);
@@ -145,13 +145,12 @@ TEST(a_design_has_the_mean_and_the_deviation_of_its_answers)
             assert_close(a.error[row * M + k], sqrt(variance / n), 1e-12);
         }
     assert_close(a.noise[0].is_relative ? 5.5 * a.noise[0].sd : a.noise[0].sd, 0.5, 0.5);
-    pareto_archive_free(&a);
 }
 
 TEST(the_front_is_what_nobody_dominates_surely_in_whatever_order_answers_come)
 {
     for (uint32_t seed = 0; seed < 20; seed++) {
-        Archive a, b;
+        OWNED(pareto_archive_free) Archive a, b;
         size_t n_front = 0;
         insert_noisy(&a, seed, 0);
         insert_noisy(&b, seed, 1);
@@ -167,14 +166,12 @@ TEST(the_front_is_what_nobody_dominates_surely_in_whatever_order_answers_come)
         assert_int_equal(b.n_front, n_front);
         assert_memory_equal(a.front, b.front, n_front * sizeof *a.front);
         assert_memory_equal(a.error, b.error, 60 * M * sizeof *a.error);
-        pareto_archive_free(&a);
-        pareto_archive_free(&b);
     }
 }
 
 TEST(a_design_that_was_lucky_once_falls_out)
 {
-    Archive a;
+    OWNED(pareto_archive_free) Archive a;
     const double X[] = {0, 1, 0, 1, 0}, F[] = {1.0, 2.0, 1.05, 0.5, 5.0, 6.0, 1.0, 0.52, 5.1, 6.0};
     CHECK_OK(pareto_archive_init(&a, 2, 1, 2, 0, &err), &err);
     for (size_t i = 0; i < 5; i++) {
@@ -183,12 +180,11 @@ TEST(a_design_that_was_lucky_once_falls_out)
     }
     pareto_archive_update_noise(&a);
     assert_true(a.n_front == 1 && a.front[0] == 1 && !a.on_front[0]);
-    pareto_archive_free(&a);
 }
 
 TEST(a_design_with_an_answer_that_failed_is_no_longer_used)
 {
-    Archive a;
+    OWNED(pareto_archive_free) Archive a;
     const double X[] = {0, 1}, F[] = {1, 1, 2, 2};
     CHECK_OK(pareto_archive_init(&a, 2, 1, 2, 0, &err), &err);
     for (size_t i = 0; i < 3; i++)
@@ -196,7 +192,6 @@ TEST(a_design_with_an_answer_that_failed_is_no_longer_used)
     pareto_archive_update_noise(&a);
     assert_true(!a.usable[0] && a.n_usable == 1 && a.n_failed == 1);
     assert_true(a.n_front == 1 && a.front[0] == 1);
-    pareto_archive_free(&a);
 }
 
 /* -- search -------------------------------------------------------------------------------------------------------- */
@@ -392,6 +387,7 @@ TEST(a_noisy_search_goes_on_from_any_generation_to_the_same_bytes)
     c.max_evals = 120;
     run(&w, &c, NULL, &seen);
     for (size_t k = 0; k + 1 < seen.moments.n; k += 2 + k / 2) {
+        OWNED(evaluation_table_free)
         EvaluationTable before = evaluations_of(&w.problem, 1, seen.moments.rows[k], seen.X, seen.Y, NULL, seen.ok,
                                                 seen.kind, seen.generation);
         const SearchStart start = {before.n, 0, before.row, seen.moments.state[k], seen.moments.n_state[k], NULL, NULL};
@@ -402,7 +398,6 @@ TEST(a_noisy_search_goes_on_from_any_generation_to_the_same_bytes)
         assert_memory_equal(again.on_front, seen.on_front, seen.n);
         assert_memory_equal(again.kind, seen.kind, seen.n);
         forget(&again);
-        evaluation_table_free(&before);
     }
     forget(&seen);
 }

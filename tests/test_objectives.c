@@ -40,22 +40,21 @@ TEST(what_is_not_asked_for_is_not_computed_and_left_empty)
     }
     run_free(&run);
     optimize("forces", "--set sim.forces=yes");
-    Run forces = run_in("forces");
+    OWNED(run_free) Run forces = run_in("forces");
     run = run_in("plain");
     assert_memory_equal(forces.F, run.F, run.table.n * 7 * sizeof *run.F);
     for (size_t i = 0; i < forces.table.n; i++)
         assert_true(extra_of(&forces, i, "core_stress_pa") > 0.0 && extra_of(&forces, i, "base_shear_n") > 0.0);
     run_free(&run);
-    run_free(&forces);
 }
 
 TEST(every_result_of_a_study_is_that_of_a_simulation_of_the_same_design)
 {
     optimize("other", "--set 'search.objectives=core_stress_pa, impacts , j1_m'");
-    Run run = run_in("other");
+    OWNED(run_free) Run run = run_in("other");
     assert_int_equal(run.schema.n_obj, 3);
     const size_t row = run.front[0];
-    json_t *o = json_of("simulate @/tower.ini --design @/other:%ld --json", run.table.row[row].id);
+    json_auto_t *o = json_of("simulate @/tower.ini --design @/other:%ld --json", run.table.row[row].id);
     assert_same_number(number(o, "core_stress_pa"), run_f(&run, row)[0]);
     assert_same_number(number(o, "impacts"), run_f(&run, row)[1]);
     assert_same_number(number(o, "j1_m"), run_f(&run, row)[2]);
@@ -69,20 +68,17 @@ TEST(every_result_of_a_study_is_that_of_a_simulation_of_the_same_design)
         else
             assert_true(json_is_null(value) ? isnan(stored) : json_is_true(value) == (stored == 1.0));
     }
-    json_decref(o);
-    run_free(&run);
 }
 
 TEST(every_file_and_command_follows_the_objectives_by_name)
 {
-    Table front = table_of("other/front.csv");
+    OWNED(table_free) Table front = table_of("other/front.csv");
     assert_int_equal(front.n_cols, 1 + N_VAR + 3 + 3);
     assert_string_equal(front.names[1 + N_VAR], "core_stress_pa");
     assert_string_equal(front.names[1 + N_VAR + 2], "j1_m");
     double least = HUGE_VAL;
     for (size_t i = 0; i < front.n_rows; i++)
         least = fmin(least, front.values[i * front.n_cols + 1 + N_VAR]);
-    table_free(&front);
     json_t *o = json_of("choose @/other --json --min core_stress_pa=1 --weights core_stress_pa=1,impacts=1e-9");
     const json_t *designs = json_object_get(o, "designs"),
                  *last = json_array_get(designs, json_array_size(designs) - 1);
@@ -98,14 +94,13 @@ TEST(every_file_and_command_follows_the_objectives_by_name)
     json_decref(o);
     free(output_of("report @/other"));
     free(output_of("polish @/other --design knee --improve core_stress_pa --max-evals 30 --csv @/polished.csv"));
-    Table polished = table_of("polished.csv");
+    OWNED(table_free) Table polished = table_of("polished.csv");
     assert_int_equal(polished.n_cols, 1 + N_VAR + 5 * 3);
     assert_string_equal(polished.names[1 + N_VAR + 3], "core_stress_pa_before");
     assert_string_equal(polished.names[1 + N_VAR + 12], "core_stress_pa_error");
     const double before = polished.values[1 + N_VAR + 3], error = polished.values[1 + N_VAR + 12];
     assert_close(before, polished.values[1 + N_VAR], 0.5);
     assert_true(error > 0.0 && error < 0.1 * before);
-    table_free(&polished);
     free(output_of("optimize @/other"));
     expect_output("largest bending stress of the core [Pa], lower is better",
                   "optimize @/other --max-evals 34");
@@ -115,13 +110,12 @@ TEST(every_file_and_command_follows_the_objectives_by_name)
 
 TEST(a_limit_on_a_further_result_decides_what_is_on_the_front)
 {
-    Run free_of, run;
+    OWNED(run_free) Run free_of, run;
     char more[128];
     free_of = run_in("forces");
     double limit = 0.0;
     for (size_t i = 0; i < free_of.n_front; i++)
         limit += extra_of(&free_of, free_of.front[i], "contact_force_max_n") / (double)free_of.n_front;
-    run_free(&free_of);
     snprintf(more, sizeof more, "--set 'search.limits=contact_force_max_n<=%.17g, drift_ratio<=0.9'", limit);
     optimize("limited", more);
     run = run_in("limited");
@@ -133,13 +127,12 @@ TEST(a_limit_on_a_further_result_decides_what_is_on_the_front)
         assert_true(!run.place[i].on_front || force <= limit);
     }
     assert_true(beyond > 0 && beyond < run.table.n && run.n_front > 0);
-    run_free(&run);
 }
 
 static void expect_limited_in(const char *name)
 {
-    Table front = table_of(name);
-    Run run = run_in("limited");
+    OWNED(table_free) Table front = table_of(name);
+    OWNED(run_free) Run run = run_in("limited");
     const size_t at = 1 + run.schema.n_var + run.schema.n_obj;
     assert_int_equal(front.n_cols, at + 2 + run.schema.n_obj); /* the last ones: likely errors */
     assert_int_equal(front.n_rows, run.n_front);
@@ -147,8 +140,6 @@ static void expect_limited_in(const char *name)
         for (size_t c = at; c < at + 2; c++)
             assert_same_number(front.values[i * front.n_cols + c], extra_of(&run, run.front[i], front.names[c]));
     assert_true(strcmp(front.names[at], "drift_ratio") == 0 && strcmp(front.names[at + 1], "contact_force_max_n") == 0);
-    table_free(&front);
-    run_free(&run);
 }
 
 TEST(limited_results_stand_beside_the_objectives)
@@ -158,13 +149,11 @@ TEST(limited_results_stand_beside_the_objectives)
     expect_limited_in("limited/front.csv");
     free(output_of("export @/limited --csv @/exported.csv"));
     expect_limited_in("exported.csv");
-    json_t *o = json_of("choose @/limited --json");
+    json_auto_t *o = json_of("choose @/limited --json");
     const json_t *knee = json_array_get(json_object_get(o, "designs"), 0);
-    Run run = run_in("limited");
+    OWNED(run_free) Run run = run_in("limited");
     assert_same_number(number(json_object_get(knee, "limited"), "contact_force_max_n"),
                        extra_of(&run, run_knee(&run), "contact_force_max_n"));
-    run_free(&run);
-    json_decref(o);
     expect_output("  drift_ratio  contact_force_max_n\n", "choose @/limited");
 }
 
@@ -180,8 +169,8 @@ static char *line_from(char *text, const char *from, int n)
 TEST(columns_stand_below_their_names_however_long_these_are)
 {
     write_in_place("tower.ini", TOWER);
-    char *said = output_of("optimize @/tower.ini --out @/long --set "
-                           "search.objectives=j1_m,building_base_shear_n,contact_force_max_n,mcore_kg");
+    FREED char *said = output_of("optimize @/tower.ini --out @/long --set "
+                                 "search.objectives=j1_m,building_base_shear_n,contact_force_max_n,mcore_kg");
     for (char *sign; (sign = strstr(said, "\u00b1"));) /* of two bytes, one place */
         memmove(sign, sign + 1, strlen(sign));
     char *heads = line_from(said, " design ", 0), *row = line_from(said, "best building_base_shear_n", 0);
@@ -194,7 +183,6 @@ TEST(columns_stand_below_their_names_however_long_these_are)
             if (below == ' ' || (next != ' ' && next != '\n'))
                 fail_msg("%.200s", heads);
         }
-    free(said);
 }
 
 /* ---- the end of a study ------------------------------------------------------------------------------------------- */

@@ -84,7 +84,7 @@ TEST(a_scene_of_bytes_has_the_matrices_records_and_settings_of_the_files)
                                           "contact.restitution=0.55"};
     static Settings s, again;
     static Portable p;
-    unsigned char *bytes;
+    FREED unsigned char *bytes;
     size_t n;
     settings_defaults(&s);
     for (size_t i = 0; i < N_OF(CHANGES); i++)
@@ -101,16 +101,15 @@ TEST(a_scene_of_bytes_has_the_matrices_records_and_settings_of_the_files)
     /* The records as they are opened from their names, the buildings as they are read. */
     for (size_t i = 0; i < 2; i++) {
         MotionOptions o = s.motion;
-        Motion m;
+        OWNED(motion_free) Motion m;
         snprintf(o.record, sizeof o.record, "%s", p.source[i]);
         CHECK_OK(motion_open(&m, &o, &err), &err);
         assert_int_equal(m.n, p.record[i].n);
         assert_memory_equal(m.accel, p.record[i].accel, m.n * sizeof *m.accel);
-        motion_free(&m);
     }
     for (size_t i = 0; i < 2; i++) {
         BuildingOptions o = s.building;
-        BuildingFiles file, byte;
+        OWNED(building_files_free) BuildingFiles file, byte;
         if (i == 1) {
             memcpy(o.model, s.core.model, sizeof o.model);
             o.modes = 0;
@@ -122,8 +121,6 @@ TEST(a_scene_of_bytes_has_the_matrices_records_and_settings_of_the_files)
         assert_memory_equal(file.floors.K, byte.floors.K, (size_t)(byte.floors.n * byte.floors.n) * sizeof(double));
         if (file.full.n > 0)
             assert_memory_equal(file.full.M, byte.full.M, (size_t)(byte.full.n * byte.full.n) * sizeof(double));
-        building_files_free(&file);
-        building_files_free(&byte);
     }
 
     /* Bytes that end early, or begin otherwise, are no scene. */
@@ -141,7 +138,6 @@ TEST(a_scene_of_bytes_has_the_matrices_records_and_settings_of_the_files)
     assert_int_equal(portable_read(&p, bytes, n, &err), STATUS_BAD_DATA);
     free(texts[0]);
     free(texts[1]);
-    free(bytes);
 }
 
 /* n designs of so many floors; of the first three no gap closes. */

@@ -89,12 +89,11 @@ TEST(textbook_problems_agree_with_a_file_of_vectors_where_there_is_one)
     if (!file)
         skip();
     while (fgets(line, sizeof line, file)) {
-        json_t *o = json_loads(line, 0, NULL);
+        json_auto_t *o = json_loads(line, 0, NULL);
         double x[VAR], f[OBJ];
         take(json_object_get(o, "x"), VAR, x);
         take(json_object_get(o, "f"), OBJ, f);
         check_vector(json_string_value(json_object_get(o, "problem")), x, f);
-        json_decref(o);
     }
     fclose(file);
 }
@@ -148,7 +147,7 @@ static ProblemOptions command_of(const char *command, double timeout_s, long n_v
 /* Two batches: workers live on between them. */
 static void ask(Batch *a, const char *command, size_t workers, double timeout_s)
 {
-    Problem p;
+    OWNED(problem_close) Problem p;
     Queue *q;
     Finished done;
     struct timespec start, end;
@@ -170,7 +169,6 @@ static void ask(Batch *a, const char *command, size_t workers, double timeout_s)
     queue_close(q);
     clock_gettime(CLOCK_MONOTONIC, &end);
     a->seconds = (double)(end.tv_sec - start.tv_sec) + 1e-9 * (double)(end.tv_nsec - start.tv_nsec);
-    problem_close(&p);
 }
 
 static void expect_every_third(const char *mode, Outcome third, const char *reason, double timeout_s)
@@ -263,9 +261,8 @@ TEST(messages_are_cut_between_characters_and_shown_whatever_they_are)
     assert_string_equal(e.reason, "zu gro\\xDF; \\xC3");
     snprintf(text, sizeof text, "=%s", want); /* an apostrophe before it */
     evaluation_set_outcome(&e, OUTCOME_ERROR, text);
-    json_t *string = json_string(e.reason);
+    json_auto_t *string = json_string(e.reason);
     assert_non_null(string);
-    json_decref(string);
 }
 
 TEST(a_talkative_worker_fails_one_design_and_is_replaced)
@@ -394,7 +391,7 @@ TEST(workers_end_with_a_program_whose_helper_was_killed_before)
 
 TEST(a_command_that_does_not_exist_ends_the_search_by_name)
 {
-    Problem p;
+    OWNED(problem_close) Problem p;
     Queue *q;
     double x[3] = {0}, f[2];
     unsigned char ok;
@@ -404,7 +401,6 @@ TEST(a_command_that_does_not_exist_ends_the_search_by_name)
     assert_int_equal(queue_evaluate(q, 1, x, NULL, f, NULL, &ok, &err), STATUS_BAD_DATA);
     assert_non_null(strstr(err.text, "no-such-simulator"));
     queue_close(q);
-    problem_close(&p);
 }
 
 /* -- adapters ------------------------------------------------------------------------------------------------------ */
@@ -508,7 +504,7 @@ TEST(noise_has_the_spread_asked_for_and_the_same_seed_the_same_noise)
     for (size_t d = 0; d < VAR; d++)
         x[d] = 0.4;
     for (int again = 0; again < 2; again++) {
-        Problem p;
+        OWNED(problem_close) Problem p;
         Queue *q;
         CHECK_OK(textbook_open(&p, &NOISY, &err), &err);
         CHECK_OK(queue_open(&q, &p, &err), &err);
@@ -525,7 +521,6 @@ TEST(noise_has_the_spread_asked_for_and_the_same_seed_the_same_noise)
             square += (f[0] / exact[0] - 1) * (f[0] / exact[0] - 1) / (2 * DRAWS);
         }
         queue_close(q);
-        problem_close(&p);
     }
     assert_less(fabs(sum), 0.003);
     assert_close(sqrt(square), 0.03, 0.06);

@@ -56,7 +56,7 @@ TEST(a_base_line_of_its_degree_leaves_no_trace)
 {
     for (int degree = 0; degree <= 2; degree++) {
         MotionOptions o = options();
-        Motion a = motion_of(1501, 0.01, noise), b = motion_of(1501, 0.01, DRIFTING[degree + 1]);
+        OWNED(motion_free) Motion a = motion_of(1501, 0.01, noise), b = motion_of(1501, 0.01, DRIFTING[degree + 1]);
         o.baseline = (MotionBaseline)(BASELINE_MEAN + degree);
         double sums[3] = {0};
         CHECK_OK(motion_process(&a, &o, &err), &err);
@@ -69,14 +69,12 @@ TEST(a_base_line_of_its_degree_leaves_no_trace)
         for (int k = 0; k <= degree; k++)
             assert_less(fabs(sums[k]), 1e-9); /* nothing of that degree is left */
         assert_non_null(strstr(b.processed, (const char *[]){"mean", "straight line", "parabola"}[degree]));
-        motion_free(&a);
-        motion_free(&b);
     }
 }
 
 TEST(a_motion_is_as_recorded_unless_it_is_asked_to_be_processed)
 {
-    Motion m = motion_of(200, 0.01, parabola);
+    OWNED(motion_free) Motion m = motion_of(200, 0.01, parabola);
     const MotionOptions o = options();
     CHECK_OK(motion_process(&m, &o, &err), &err);
     assert_int_equal(m.n, 200);
@@ -84,17 +82,15 @@ TEST(a_motion_is_as_recorded_unless_it_is_asked_to_be_processed)
         assert_same_number(m.accel[i], parabola((double)i * 0.01));
     assert_string_equal(m.processed, "");
     assert_false(motion_is_corrected(&o));
-    motion_free(&m);
 }
 
 TEST(too_few_samples_for_a_base_line_are_refused)
 {
     MotionOptions o = options();
     o.baseline = BASELINE_QUADRATIC;
-    Motion m = motion_of(3, 0.01, noise);
+    OWNED(motion_free) Motion m = motion_of(3, 0.01, noise);
     assert_int_equal(motion_process(&m, &o, &err), STATUS_BAD_DATA);
     assert_non_null(strstr(err.text, "too few"));
-    motion_free(&m);
 }
 
 /* ---- filters ----------------------------------------------------------------------------------------------------- */
@@ -111,7 +107,7 @@ TEST(a_high_pass_brings_the_ground_to_rest_where_it_was)
         MotionFigures before, after;
         MotionOptions o = options();
         o.highpass_hz = hz;
-        Motion m = motion_of(3001, 0.01, offset_quake);
+        OWNED(motion_free) Motion m = motion_of(3001, 0.01, offset_quake);
         motion_figures(&m, &before);
         CHECK_OK(motion_process(&m, &o, &err), &err);
         motion_figures(&m, &after);
@@ -126,7 +122,6 @@ TEST(a_high_pass_brings_the_ground_to_rest_where_it_was)
         assert_close(after.pga_m_s2, before.pga_m_s2, 0.02); /* 2 Hz is let pass */
         assert_non_null(strstr(m.processed, "zeros added at both ends"));
         free(v);
-        motion_free(&m);
     }
 }
 
@@ -144,18 +139,17 @@ TEST(a_low_pass_takes_the_high_tone_and_leaves_the_low_one_in_place)
 {
     MotionOptions o = options();
     o.lowpass_hz = 8;
-    Motion m = motion_of(6001, 0.005, two_tones);
+    OWNED(motion_free) Motion m = motion_of(6001, 0.005, two_tones);
     CHECK_OK(motion_process(&m, &o, &err), &err);
     assert_int_equal(m.n, 6001);
     for (size_t i = 0; i < m.n; i++)
         assert_less(fabs(m.accel[i] - slow_tone((double)i * 0.005)), 1.5e-3); /* (8/20)^8 = 7e-4 is left of it */
-    motion_free(&m);
 }
 
 TEST(a_cutoff_that_the_record_cannot_have_is_refused_by_its_key)
 {
     MotionOptions o = options();
-    Motion m = motion_of(100, 0.01, noise);
+    OWNED(motion_free) Motion m = motion_of(100, 0.01, noise);
     o.lowpass_hz = 50;
     assert_int_equal(motion_process(&m, &o, &err), STATUS_BAD_DATA);
     assert_non_null(strstr(err.text, "motion.lowpass_hz"));
@@ -163,7 +157,6 @@ TEST(a_cutoff_that_the_record_cannot_have_is_refused_by_its_key)
     o.highpass_hz = 1e-9;
     assert_int_equal(motion_process(&m, &o, &err), STATUS_BAD_DATA);
     assert_non_null(strstr(err.text, "padding"));
-    motion_free(&m);
 }
 
 /* ---- scaling ----------------------------------------------------------------------------------------------------- */
@@ -186,11 +179,10 @@ TEST(a_factor_multiplies_what_was_recorded)
 {
     MotionOptions o = options();
     o.factor = 1.75;
-    Motion m = scaled(&o);
+    OWNED(motion_free) Motion m = scaled(&o);
     for (size_t i = 0; i < m.n; i++)
         assert_same_number(m.accel[i], 1.75 * offset_quake((double)i * 0.01));
     assert_close(m.scale, 1.75, 0);
-    motion_free(&m);
 }
 
 TEST(a_spectral_value_is_reached_at_its_period_after_stretching)
@@ -201,10 +193,9 @@ TEST(a_spectral_value_is_reached_at_its_period_after_stretching)
             o.sa_g = 0.42;
             o.sa_period_s = T;
             o.stretch = stretch;
-            Motion m = scaled(&o);
+            OWNED(motion_free) Motion m = scaled(&o);
             assert_close(psa_at(&m, T), 0.42 * GRAVITY, 1e-12);
             assert_close(m.dt_s, 0.01 * stretch, 1e-15);
-            motion_free(&m);
         }
 }
 
@@ -244,18 +235,16 @@ TEST(the_scale_to_a_code_spectrum_makes_the_mean_square_least)
         MotionOptions o = options();
         strcpy(o.target, k ? "asce7 sds=1 sd1=0.6" : "eurocode8 ag=0.3 soil=B");
         const CodeSpectrum target = target_of(o.target);
-        Motion m = scaled(&o);
+        OWNED(motion_free) Motion m = scaled(&o);
         const double least = target_misfit(&m, &target);
         for (int side = 0; side < 2; side++) {
             MotionOptions other = options();
             other.factor = m.scale * (side ? 1.05 : 0.95);
-            Motion off = motion_of(3001, 0.01, offset_quake);
+            OWNED(motion_free) Motion off = motion_of(3001, 0.01, offset_quake);
             CHECK_OK(motion_scale(&off, &other, &err), &err);
             const double misfit = target_misfit(&off, &target), shift = log(side ? 1.05 : 0.95);
             assert_close(misfit * misfit, least * least + shift * shift, 1e-9);
-            motion_free(&off);
         }
-        motion_free(&m);
     }
 }
 
@@ -316,21 +305,20 @@ TEST(the_figures_beside_processed_ones_are_those_of_the_record_at_the_same_scale
 {
     json_t *a = json_of("spectrum builtin:sylmar-like --json --set motion.baseline=linear --pga 0.3"),
            *r = json_object_get(a, "recorded");
-    json_t *b = json_of("spectrum builtin:sylmar-like --json --set motion.factor=%.17g", number(a, "scale"));
+    json_auto_t *b = json_of("spectrum builtin:sylmar-like --json --set motion.factor=%.17g", number(a, "scale"));
     assert_true(json_is_true(json_object_get(a, "corrected")));
     assert_true(json_is_false(json_object_get(b, "corrected")));
     assert_close(number(r, "pgd_m"), number(b, "pgd_m"), 1e-12);
     assert_close(number(r, "pgv_m_s"), number(b, "pgv_m_s"), 1e-12);
     assert_true(json_equal(json_object_get(r, "psa_m_s2"), json_object_get(b, "psa_m_s2")));
     json_decref(a);
-    json_decref(b);
 }
 
 /* A million samples: 8 MB each for five histories, 24 and 10 for the rows and the text of the file. */
 TEST(the_histories_of_a_long_record_are_written_without_a_second_copy)
 {
     struct rusage used;
-    char *path = in_place("long.csv");
+    FREED char *path = in_place("long.csv");
     FILE *f = fopen(path, "w");
     assert_non_null(f);
     fprintf(f, "# dt = 0.01 s, units: m/s2\n");
@@ -340,28 +328,25 @@ TEST(the_histories_of_a_long_record_are_written_without_a_second_copy)
     expect(0, "", "spectrum @/long.csv --history @/long_history.csv >/dev/null");
     assert_int_equal(getrusage(RUSAGE_CHILDREN, &used), 0);
     assert_at_most((double)used.ru_maxrss, 100e3); /* kB */
-    free(path);
 }
 
 TEST(several_motions_are_shown_with_their_mean_and_the_target)
 {
     static const char ALL[] = "builtin:kobe-like builtin:elcentro-like builtin:sylmar-like";
     free(output_of("spectrum %s --set 'motion.target=eurocode8 ag=0.3 soil=B' --csv @/all.csv", ALL));
-    Table t = table_of("all.csv");
+    OWNED(table_free) Table t = table_of("all.csv");
     assert_int_equal(t.n_cols, 6);
     for (size_t i = 0; i < t.n_rows; i++) {
         const double *row = t.values + i * t.n_cols;
         assert_close(row[1], (row[3] + row[4] + row[5]) / 3, 1e-12);
         assert_less(0, row[2]);
     }
-    table_free(&t);
     if (has_browser()) {
         free(output_of("spectrum %s --set 'motion.target=eurocode8 ag=0.3 soil=B' --svg @/all.svg", ALL));
-        char *svg = read_in_place("all.svg");
+        FREED char *svg = read_in_place("all.svg");
         static const char *const WORDS[] = {"kobe-like", "elcentro-like", "sylmar-like", "mean", "target", "</svg>"};
         for (size_t i = 0; i < sizeof WORDS / sizeof WORDS[0]; i++)
             assert_non_null(strstr(svg, WORDS[i]));
-        free(svg);
     }
     expect(2, "--history takes one motion", "spectrum builtin:kobe-like builtin:sylmar-like --history -");
 }
@@ -370,14 +355,12 @@ TEST(a_study_keeps_in_its_provenance_what_was_done_to_the_record)
 {
     free(output_of("optimize configs/quick.ini --out @/run --max-evals 48 --set search.initial=48 --set "
                    "sim.duration_s=8 --set motion.highpass_hz=0.2 --set motion.baseline=mean"));
-    char *text = read_in_place("run/provenance.json");
-    json_t *o = json_loads(text, 0, NULL);
+    FREED char *text = read_in_place("run/provenance.json");
+    json_auto_t *o = json_loads(text, 0, NULL);
     const char *said = json_string_value(json_object_get(json_object_get(o, "inputs"), "record_processed"));
     assert_non_null(said);
     assert_non_null(strstr(said, "base line: mean subtracted"));
     assert_non_null(strstr(said, "high-pass 0.2 Hz"));
-    json_decref(o);
-    free(text);
 }
 
 SUITE(make_place, clear_place)

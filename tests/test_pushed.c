@@ -27,7 +27,7 @@ static SimResult push(Engine engine, ForceFn force, double duration, double gap)
 {
     static double accel[SAMPLES], f[SAMPLES];
     const Motion motion = {.accel = accel, .n = SAMPLES, .dt_s = STEP, .force = f, .n_force = 1};
-    SimModel model;
+    OWNED(model_free) SimModel model;
     SimResult r;
     for (int i = 0; i < SAMPLES; i++)
         f[i] = FORCE * force(i * STEP);
@@ -37,7 +37,6 @@ static SimResult push(Engine engine, ForceFn force, double duration, double gap)
     CHECK_OK(engine_entry(engine)->run(&model, &motion, &o, &r, &err), &err);
     assert_int_equal(r.outcome, RUN_OK);
     assert_less(r.energy_balance_error, 1e-6);
-    model_free(&model);
     return r;
 }
 
@@ -171,7 +170,7 @@ TEST(both_engines_agree_on_impacts_under_a_blast_and_the_baselines_know_it)
     for (int j = 0; j < 20; j++)
         x[j] = 0.005 + 0.01 * fmod(0.618 * (j + 1), 1);
     for (int i = 0; i < 2; i++) {
-        Motion m;
+        OWNED(motion_free) Motion m;
         SceneOptions o = scene_defaults();
         blast_on_tower(&m, RECORDS[i]);
         o.sim.duration_s = i ? 3 : 8;
@@ -189,7 +188,6 @@ TEST(both_engines_agree_on_impacts_under_a_blast_and_the_baselines_know_it)
         assert_close(fast.j2_m, cvode.j2_m, 1e-4);
         assert_close(fast.j3_g, cvode.j3_g, 1e-3);
         assert_close(fast.input_energy_j, cvode.input_energy_j, 1e-4);
-        motion_free(&m);
     }
 }
 
@@ -221,7 +219,7 @@ TEST(histories_of_a_pushed_building_show_the_accelerations_that_the_peaks_are_of
     write_in_place("f.csv", "time_s,floor_20_n\n0,1e7\n2,1e7\n2.01,0\n6,0\n");
     free(output_of("simulate configs/quick.ini --set motion.record=none --set motion.forces=@/f.csv --design none "
                    "--history @/h.csv --every 0.01 --csv @/r.csv"));
-    Table h, r;
+    OWNED(table_free) Table h, r;
     CHECK_OK(table_read(&h, at("h.csv"), TABLE_HEADED, &err), &err);
     CHECK_OK(table_read(&r, at("r.csv"), TABLE_WORDS, &err), &err);
     double most = 0, wanted;
@@ -229,20 +227,17 @@ TEST(histories_of_a_pushed_building_show_the_accelerations_that_the_peaks_are_of
         most = fmax(most, fabs(h.values[i * h.n_cols + (size_t)table_column(&h, "accel_20_g")]));
     CHECK_OK(sheet_number(&r, 0, "j3_g", NAN, &wanted, &err), &err);
     assert_close(most, wanted, 1e-2);
-    table_free(&h);
-    table_free(&r);
 }
 
 TEST(the_example_of_a_blast_runs_from_its_folder_and_ends_in_free_vibration)
 {
     write_in_place("d.csv", "gap_zone_1_m,gap_zone_2_m,gap_zone_3_m,gap_zone_4_m,gap_zone_5_m,t_base_m,t_top_m\n"
                             "0.012,0.03,0.05,0.07,0.09,0.03,0.02\n");
-    json_t *o = json_of("simulate configs/blast.ini --design @/d.csv --json");
+    json_auto_t *o = json_of("simulate configs/blast.ini --design @/d.csv --json");
     json_t *r = json_is_array(json_object_get(o, "results")) ? json_array_get(json_object_get(o, "results"), 0) : o;
     assert_less(5, number(r, "impacts"));
     assert_less(0, number(r, "input_energy_j"));
     assert_less(number(r, "energy_balance_error"), 1e-3);
-    json_decref(o);
 }
 
 SUITE(make_place, clear_place)

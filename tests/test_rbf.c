@@ -39,12 +39,11 @@ TEST(the_surface_goes_through_its_data)
     double X[N * D], F[N * OUT], f[OUT];
     scatter(1, N, X, F);
     for (int tune = 0; tune < 2; tune++) {
-        Rbf *m = fitted(N, X, F, tune);
+        FREED Rbf *m = fitted(N, X, F, tune);
         for (int i = 0; i < N; i++) {
             rbf_eval(m, 1, X + i * D, f, NULL);
             assert_less(fabs(f[0] - F[i * OUT]), 1e-4);
         }
-        free(m);
     }
 }
 
@@ -53,13 +52,12 @@ TEST(linear_functions_are_reproduced_everywhere)
     double X[N * D], F[N * OUT], Y[N * D], wanted[N * OUT], f[OUT];
     scatter(1, N, X, F);
     scatter(2, N, Y, wanted);
-    Rbf *m = fitted(N, X, F, 0);
+    FREED Rbf *m = fitted(N, X, F, 0);
     for (int i = 0; i < N; i++) {
         rbf_eval(m, 1, Y + i * D, f, NULL);
         assert_close(f[1], wanted[i * OUT + 1], 1e-9);
     }
     assert_less(1 - 1e-12, rbf_explained(m, 1));
-    free(m);
 }
 
 TEST(tuning_lowers_the_error_at_unseen_points)
@@ -68,12 +66,11 @@ TEST(tuning_lowers_the_error_at_unseen_points)
     scatter(1, N, X, F);
     scatter(2, N, Y, wanted);
     for (int tune = 0; tune < 2; tune++) {
-        Rbf *m = fitted(N, X, F, tune);
+        FREED Rbf *m = fitted(N, X, F, tune);
         for (int i = 0; i < N; i++) {
             rbf_eval(m, 1, Y + i * D, f, NULL);
             square[tune] += (f[0] - wanted[i * OUT]) * (f[0] - wanted[i * OUT]) / N;
         }
-        free(m);
     }
     assert_less(square[1], square[0]);
     assert_less(sqrt(square[1]), 5e-3);
@@ -84,7 +81,7 @@ TEST(an_exact_output_is_told_by_a_few_centres_and_others_by_all)
 {
     enum { MANY = 160 };
     double X[MANY * D], F[MANY * OUT], Y[N * D], wanted[N * OUT], f[OUT], J[OUT * D];
-    Rbf *m;
+    FREED Rbf *m;
     scatter(1, MANY, X, F);
     scatter(2, N, Y, wanted);
     for (size_t i = 0; i < MANY; i++)
@@ -105,7 +102,6 @@ TEST(an_exact_output_is_told_by_a_few_centres_and_others_by_all)
         assert_less(1.0 - 1e-9, rbf_explained(m, 1));
         assert_true(rbf_leave_one_out(m, 1)[MANY - 1] == 0.0);
     }
-    free(m);
 }
 
 static void set_shape(Rbf *m, size_t output, RbfForm form)
@@ -176,7 +172,7 @@ TEST(a_mean_of_answers_with_its_part_of_the_variance_is_worth_all_of_them)
         memcpy(F + i * OUT, mean, sizeof mean);
     }
     assert_same_number(n, 50);
-    Rbf *means, *all;
+    FREED Rbf *means, *all;
     CHECK_OK(rbf_create(&means, N, D, OUT, &err), &err);
     CHECK_OK(rbf_create(&all, N, D, OUT, &err), &err);
     for (size_t k = 0; k < OUT; k++) {
@@ -191,8 +187,6 @@ TEST(a_mean_of_answers_with_its_part_of_the_variance_is_worth_all_of_them)
         for (size_t k = 0; k < OUT; k++)
             assert_close(f[k], wanted[k], 1e-9);
     }
-    free(means);
-    free(all);
 }
 
 /* Every other answer scatters ten times as much. The nugget is that of the rest. */
@@ -209,14 +203,13 @@ TEST(tuning_finds_the_nugget_of_answers_of_different_variance)
         F[i * OUT] += deviation * sqrt(V[i * OUT]) * random_normal(&r);
     }
     for (int told = 0; told < 2; told++) {
-        Rbf *m;
+        FREED Rbf *m;
         CHECK_OK(rbf_create(&m, MANY, D, OUT, &err), &err);
         CHECK_OK(rbf_tune(m, MANY, X, F, told ? V : NULL, &err), &err);
         for (size_t i = 0; i < MANY; i++) {
             rbf_eval(m, 1, Y + i * D, f, NULL);
             square[told] += (f[0] - wanted[i * OUT]) * (f[0] - wanted[i * OUT]) / MANY;
         }
-        free(m);
     }
     if (!(square[1] < 0.25 * square[0] && square[1] < deviation * deviation))
         fail_msg("root mean square error %g where the variances are told, %g where they are not", sqrt(square[1]),
@@ -229,10 +222,9 @@ TEST(equal_designs_with_different_answers_are_averaged)
     scatter(4, N, X, F);
     memcpy(X + D, X, D * sizeof *X);
     F[OUT] = F[0] + 0.2;
-    Rbf *m = fitted(N, X, F, 1);
+    FREED Rbf *m = fitted(N, X, F, 1);
     rbf_eval(m, 1, X, f, NULL);
     assert_less(fabs(f[0] - (F[0] + 0.1)), 0.08);
-    free(m);
 }
 
 TEST(the_error_estimate_is_of_the_size_of_the_true_error)
@@ -241,13 +233,12 @@ TEST(the_error_estimate_is_of_the_size_of_the_true_error)
     for (uint32_t seed = 1; seed <= 10; seed++) {
         scatter(seed, N, X, F);
         scatter(100 + seed, N, Y, wanted);
-        Rbf *m = fitted(N, X, F, 0);
+        FREED Rbf *m = fitted(N, X, F, 0);
         for (int i = 0; i < N; i++) {
             rbf_eval(m, 1, Y + i * D, f, e);
             square += (f[0] - wanted[i * OUT]) * (f[0] - wanted[i * OUT]);
             estimate += e[0] * e[0];
         }
-        free(m);
     }
     if (!(estimate > square / 4 && estimate < square * 9))
         fail_msg("estimate %g, true %g", estimate, square);
@@ -259,11 +250,10 @@ TEST(a_constant_output_is_predicted_without_error)
     scatter(1, N, X, F);
     for (int i = 0; i < N; i++)
         F[i * OUT] = 4.0;
-    Rbf *m = fitted(N, X, F, 1);
+    FREED Rbf *m = fitted(N, X, F, 1);
     rbf_eval(m, 1, (const double[D]){0.1, 0.9, 0.4, 0.2}, f, e);
     assert_close(f[0], 4.0, 1e-12);
     assert_less(e[0], 1e-12);
-    free(m);
 }
 
 TEST(a_value_that_is_not_finite_is_refused)
@@ -271,11 +261,10 @@ TEST(a_value_that_is_not_finite_is_refused)
     double X[N * D], F[N * OUT];
     scatter(1, N, X, F);
     F[17 * OUT] = NAN;
-    Rbf *m;
+    FREED Rbf *m;
     CHECK_OK(rbf_create(&m, N, D, OUT, &err), &err);
     assert_int_equal(rbf_fit(m, N, X, F, NULL, &err), STATUS_BAD_DATA);
     assert_int_equal(rbf_tune(m, N, X, F, NULL, &err), STATUS_BAD_DATA);
-    free(m);
 }
 
 /* Without that centre nothing is known of its variable: its coefficient of the tail has no leave-one-out error. */
@@ -289,12 +278,11 @@ TEST(a_centre_that_alone_moves_a_variable_is_fitted_all_the_same)
                 X[i * D + d] = i == d ? 0.3 : 0.0;
         for (int i = 0; i < N * OUT; i++)
             F[i] = X[i / OUT * D] + 2.0 * X[i / OUT * D + 1];
-        Rbf *m = fitted(N, X, F, 1);
+        FREED Rbf *m = fitted(N, X, F, 1);
         assert_int_equal(rbf_left_out(m), 0);
         rbf_eval(m, 1, (const double[D]){0.1, 0.2, 0.1, 0.1}, f, e);
         for (int k = 0; k < OUT; k++)
             assert_true(isfinite(f[k]) && isfinite(e[k]) && isfinite(rbf_explained(m, (size_t)k)));
-        free(m);
     }
 }
 
@@ -302,7 +290,7 @@ TEST(the_mean_stands_for_an_output_that_cannot_be_fitted)
 {
     double X[N * D], F[N * OUT], f[OUT], mean = 0.0;
     scatter(1, N, X, F);
-    Rbf *m = fitted(N, X, F, 1);
+    FREED Rbf *m = fitted(N, X, F, 1);
     m->output[0].shape.theta[1] = NAN;
     CHECK_OK(rbf_fit(m, N, X, F, NULL, &err), &err);
     assert_int_equal(rbf_left_out(m), 1);
@@ -314,7 +302,6 @@ TEST(the_mean_stands_for_an_output_that_cannot_be_fitted)
     assert_true(rbf_explained(m, 0) == 0.0 && rbf_explained(m, 1) > 0.0);
     for (int i = 0; i < N; i++)
         assert_close(rbf_leave_one_out(m, 0)[i], (F[i * OUT] - mean) * N / (N - 1), 1e-9);
-    free(m);
 }
 
 TEST(the_slope_of_the_surface_equals_differences_for_every_form)
@@ -323,7 +310,7 @@ TEST(the_slope_of_the_surface_equals_differences_for_every_form)
     scatter(7, N, X, F);
     enum { FORMS = RBF_N_KERNELS * RBF_N_TAILS };
     for (int form = 0; form < FORMS; form++) {
-        Rbf *m = fitted(N, X, F, 1);
+        FREED Rbf *m = fitted(N, X, F, 1);
         for (size_t k = 0; k < OUT; k++)
             m->output[k].form = (RbfForm){(RbfKernel)(form / RBF_N_TAILS), (RbfTail)(form % RBF_N_TAILS), 1e-6};
         CHECK_OK(rbf_fit(m, N, X, F, NULL, &err), &err);
@@ -342,7 +329,6 @@ TEST(the_slope_of_the_surface_equals_differences_for_every_form)
             assert_less(fabs(J[d] - (up[0] - down[0]) / (2 * h)), 1e-4);
             assert_less(fabs(J[D + d] - (up[1] - down[1]) / (2 * h)), 10.0); /* of 1e5 */
         }
-        free(m);
     }
 }
 
@@ -362,7 +348,7 @@ TEST(waves_along_single_variables_are_found_from_few_designs_and_only_where_ther
         }
         F[2 * i + 1] = sin(4.0 * F[2 * i + 1]);
     }
-    Rbf *m;
+    FREED Rbf *m;
     CHECK_OK(rbf_create(&m, DESIGNS, MANY, 2, &err), &err);
     CHECK_OK(rbf_tune(m, DESIGNS, X, F, NULL, &err), &err);
     assert_true(rbf_is_additive(m, 0) && !rbf_is_additive(m, 1));
@@ -379,7 +365,6 @@ TEST(waves_along_single_variables_are_found_from_few_designs_and_only_where_ther
         spread += (answer - 5.0) * (answer - 5.0);
     }
     assert_less(square, 0.1 * spread);
-    free(m);
 }
 
 SUITE(NULL, NULL)

@@ -63,15 +63,13 @@ static SimResult run_cvode(const Stage *stage, const Motion *m, double duration,
 static SimResult run_tied(const Stage *stage, const Motion *m, double duration, Accuracy accuracy)
 {
     SimResult r;
-    Joined both;
-    SimModel model;
+    OWNED(joined_free) Joined both;
+    OWNED(model_free) SimModel model;
     CHECK_OK(joined_make(&both, &stage->b, &stage->core, &err), &err);
     CHECK_OK(model_create(&model, stage->b.n, stage->b.model.n, &err), &err);
     CHECK_OK(model_set(&model, &stage->s, &both.building, NULL, NULL, &err), &err);
     CHECK_OK(engine_fast(&model, m, &(EngineOptions){.duration = duration, .accuracy = accuracy}, &r, &err), &err);
     joined_book(&both, &r);
-    joined_free(&both);
-    model_free(&model);
     return r;
 }
 
@@ -88,7 +86,7 @@ static const double IMPACT_AT = 2.5, MASS = 1e5, CORE_MASS = 3e5, REDUCED = 0.75
 
 static SimResult single_impact(double a, double duration)
 {
-    SimModel model;
+    OWNED(model_free) SimModel model;
     SimResult r;
     double pulse[] = {0, -1, 0};
     const Motion m = {.accel = pulse, .n = 3, .dt_s = 1};
@@ -97,7 +95,6 @@ static SimResult single_impact(double a, double duration)
     CHECK_OK(engine_cvode(&model, &m, &(EngineOptions){.duration = duration, .accuracy = ACCURACY_FINE}, &r, &err),
              &err);
     assert_ok(&r);
-    model_free(&model);
     return r;
 }
 
@@ -120,7 +117,7 @@ TEST(an_isolated_impact_is_as_deep_and_as_long_as_hertz_says)
 
 TEST(finer_tolerances_come_nearer_to_the_finest)
 {
-    Stage stage;
+    OWNED(stage_free) Stage stage;
     double accel[SINES_N];
     const Motion m = sines(accel, 1);
     stage_set(&stage, 0.002);
@@ -133,12 +130,11 @@ TEST(finer_tolerances_come_nearer_to_the_finest)
     assert_close(standard.edcs_pct, fine.edcs_pct, 1e-5);
     assert_close(coarse.j3_g, fine.j3_g, 1e-3);
     assert_close(coarse.edcs_pct, fine.edcs_pct, 1e-3);
-    stage_free(&stage);
 }
 
 TEST(no_shaking_is_no_response)
 {
-    Stage stage;
+    OWNED(stage_free) Stage stage;
     double accel[SINES_N];
     const Motion m = sines(accel, 0);
     stage_set(&stage, 0.01);
@@ -147,12 +143,11 @@ TEST(no_shaking_is_no_response)
     assert_ok(&t);
     assert_true(r.j1_m == 0 && r.j3_g == 0 && isnan(r.ed1_pct) && r.energy_balance_error == 0);
     assert_true(t.j1_m == 0 && t.j3_g == 0 && isnan(t.ed1_pct) && t.energy_balance_error == 0);
-    stage_free(&stage);
 }
 
 TEST(a_motion_with_nan_is_a_failed_outcome)
 {
-    Stage stage;
+    OWNED(stage_free) Stage stage;
     double accel[SINES_N];
     const Motion m = sines(accel, 1);
     accel[7] = NAN;
@@ -161,7 +156,6 @@ TEST(a_motion_with_nan_is_a_failed_outcome)
     assert_int_equal(r.outcome, RUN_NOT_FINITE);
     assert_int_equal(t.outcome, RUN_NOT_FINITE);
     assert_true(r.reason[0]);
-    stage_free(&stage);
 }
 
 enum { N = 20, PARTS = 100 };
@@ -233,7 +227,7 @@ static void pair_shake(Pair *pair, const Motion *m)
 
 TEST(without_damping_the_tied_pair_is_a_sum_of_closed_forms)
 {
-    Stage stage;
+    OWNED(stage_free) Stage stage;
     Pair pair;
     double accel[SINES_N], energy = 0;
     const Motion m = sines(accel, 1);
@@ -252,12 +246,11 @@ TEST(without_damping_the_tied_pair_is_a_sum_of_closed_forms)
     assert_close(r.kinetic_strain_j, energy, 1e-9);
     assert_close(r.input_energy_j, energy, 1e-8);
     assert_less(fabs(r.damped_building_j) + fabs(r.damped_core_j), 1e-9 * energy);
-    stage_free(&stage);
 }
 
 TEST(the_books_of_the_tied_pair_close)
 {
-    Stage stage;
+    OWNED(stage_free) Stage stage;
     double accel[SINES_N];
     const Motion m = sines(accel, 1);
     stage_set(&stage, 0);
@@ -269,13 +262,12 @@ TEST(the_books_of_the_tied_pair_close)
     assert_close(coarse.kinetic_strain_j, fine.kinetic_strain_j, 1e-10);
     assert_close(coarse.j3_g, fine.j3_g, 1e-3);
     assert_close(coarse.edcs_pct, fine.edcs_pct, 1e-6);
-    stage_free(&stage);
 }
 
 /* A core of next to no stiffness and mass leaves the bare building; cut short between samples, and run past the end. */
 TEST(tied_to_next_to_nothing_the_building_is_the_bare_one)
 {
-    Stage stage;
+    OWNED(stage_free) Stage stage;
     double accel[SINES_N];
     const Motion m = sines(accel, 1);
     static const double DURATION[] = {1.234, 3, 4.321};
@@ -295,7 +287,6 @@ TEST(tied_to_next_to_nothing_the_building_is_the_bare_one)
         for (int k = 0; k < 10; k++)
             assert_close(t.mode_share_pct[k], r.mode_share_pct[k], 1e-5);
     }
-    stage_free(&stage);
 }
 
 SUITE(NULL, NULL)

@@ -41,7 +41,7 @@ TEST(a_noisy_run_stopped_after_every_kth_simulation_is_the_run_that_never_stoppe
 
 TEST(the_front_has_means_spreads_and_members_of_what_was_simulated)
 {
-    Run h = run_in("whole");
+    OWNED(run_free) Run h = run_in("whole");
     size_t repeats = 0, confirmed = 0;
     assert_true(h.schema.has_spread && h.table.n == SIMULATIONS);
     for (size_t i = 0; i < h.table.n; i++) {
@@ -66,37 +66,30 @@ TEST(the_front_has_means_spreads_and_members_of_what_was_simulated)
     assert_at_most(h.n_repeats, REPEATS);
     assert_at_most(REPEATS / 2, h.n_repeats);
     assert_at_most(2, confirmed);
-    run_free(&h);
 }
 
 TEST(the_exports_and_status_tell_of_repeats)
 {
     free(output_of("export @/whole --csv @/exported.csv"));
-    char *front = read_in_place("whole/front.csv"), *exported = read_in_place("exported.csv");
+    FREED char *front = read_in_place("whole/front.csv"), *exported = read_in_place("exported.csv");
     assert_string_equal(front, exported);
     assert_non_null(strstr(front, ",f1,f2,f1_sd,f2_sd,replicates\n"));
-    free(front);
-    free(exported);
-    char *all = all_of("whole");
-    json_t *said = json_of("status @/whole --json");
+    FREED char *all = all_of("whole");
+    json_auto_t *said = json_of("status @/whole --json");
     size_t n = 0;
     for (const char *at = all; (at = strstr(at, ",repeat,")); at++)
         n++;
     assert_at_most(REPEATS / 2, n);
     assert_same_number(number(said, "repeats"), (double)n);
-    free(all);
-    json_decref(said);
 }
 
 TEST(without_noise_nothing_is_repeated_and_the_tables_are_as_ever)
 {
     study(QUIET, "quiet", 0);
-    Run h = run_in("quiet");
-    char *front = read_in_place("quiet/front.csv");
+    OWNED(run_free) Run h = run_in("quiet");
+    FREED char *front = read_in_place("quiet/front.csv");
     assert_true(!h.schema.has_spread && h.n_repeats == 0);
     assert_null(strstr(front, "replicates"));
-    free(front);
-    run_free(&h);
 }
 
 SUITE(prepare, clear_place)

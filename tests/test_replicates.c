@@ -41,13 +41,12 @@ static void run_designs(const Settings *settings, long threads, Replicated *out)
 {
     double X[DESIGNS * N_VAR];
     Settings s = *settings;
-    Problem p;
+    OWNED(problem_close) Problem p;
     designs(X);
     s.search.threads = threads;
     memset(out, 0, sizeof *out);
     CHECK_OK(tower_open(&p, &s, TOWER_AS_SET, SIZE_MAX, &err), &err);
     CHECK_OK(tower_replicate(&p, DESIGNS, X, out->shown, out->sum, &err), &err);
-    problem_close(&p);
 }
 
 TEST(one_replicate_under_one_record_is_the_simulation_itself)
@@ -107,14 +106,13 @@ TEST(without_contact_there_is_no_spread)
 {
     double x[N_VAR];
     Settings s = short_scene("none", 4, "0");
-    Problem p;
+    OWNED(problem_close) Problem p;
     SimResult shown;
     ReplicateSummary sum;
     for (int j = 0; j < N_VAR; j++)
         x[j] = j < 20 ? 4.0 * (j + 1) : 0.01;
     CHECK_OK(tower_open(&p, &s, TOWER_AS_SET, SIZE_MAX, &err), &err);
     CHECK_OK(tower_replicate(&p, 1, x, &shown, &sum, &err), &err);
-    problem_close(&p);
     assert_int_equal(sum.n_failed, 0);
     for (int k = 0; k < N_MEASURES; k++)
         if (!isnan(measure_value(&shown, k)))
@@ -126,7 +124,7 @@ TEST(a_design_asked_for_again_gets_further_replicates)
 {
     double X[DESIGNS * N_VAR], first[N_VAR], fifth[N_VAR];
     const Settings s = short_scene("none", 4, "0.01");
-    Problem p;
+    OWNED(problem_close) Problem p;
     Queue *q;
     Finished done;
     SimResult alone;
@@ -145,13 +143,11 @@ TEST(a_design_asked_for_again_gets_further_replicates)
     assert_int_equal(alone.impacts, 0);
     Settings single = s;
     single.sim.gap_tolerance_m = 0.0;
-    Problem other;
+    OWNED(problem_close) Problem other;
     CHECK_OK(tower_open(&other, &single, TOWER_SINGLE, 1, &err), &err);
     CHECK_OK(tower_simulate(&other, 1, &(SimTask){.kind = SCENE_IMPACT, .x = fifth}, &alone, &err), &err);
     assert_same_number(alone.j1_m, ((const Measured *)done.parts)[0].value[MEASURE_J1]);
-    problem_close(&other);
     queue_close(q);
-    problem_close(&p);
 }
 
 static void run_as_built(const Problem *p, const AsBuilt *built, const double x[], SimResult *r)
@@ -166,12 +162,11 @@ static void run_as_built(const Problem *p, const AsBuilt *built, const double x[
 static SimResult run_scene(const Settings *s, const AsBuilt *built)
 {
     double X[DESIGNS * N_VAR];
-    Problem p;
+    OWNED(problem_close) Problem p;
     SimResult r;
     designs(X);
     CHECK_OK(tower_open(&p, s, TOWER_SINGLE, 1, &err), &err);
     run_as_built(&p, built, X, &r);
-    problem_close(&p);
     return r;
 }
 
@@ -204,7 +199,7 @@ TEST(a_structure_as_built_is_the_scene_whose_settings_say_so)
 TEST(a_stiffer_building_vibrates_faster_by_the_root_of_it)
 {
     Building b, out;
-    double *store = NULL;
+    FREED double *store = NULL;
     AsBuilt stiff = AS_DESIGNED;
     stiff.building_stiffness = 1.21;
     CHECK_OK(load_model(&b, "guyan", &err), &err);
@@ -215,7 +210,6 @@ TEST(a_stiffer_building_vibrates_faster_by_the_root_of_it)
         assert_close(out.K[i * b.n + i], 1.21 * b.K[i * b.n + i], 1e-12);
         assert_true(out.zeta[i] == b.zeta[i] && out.phi == b.phi);
     }
-    free(store);
     building_free(&b);
 }
 
@@ -275,7 +269,7 @@ TEST(mean_plus_sd_is_that_of_the_single_simulations)
     for (size_t k = 0; k < REPLICATES; k++) {
         Settings single = s;
         double x[N_VAR];
-        Problem p;
+        OWNED(problem_close) Problem p;
         SimResult r;
         const AsBuilt b = replicate_as_built((uint32_t)s.search.seed, k, &s.sim.uncertain);
         memcpy(x, X, sizeof x);
@@ -283,7 +277,6 @@ TEST(mean_plus_sd_is_that_of_the_single_simulations)
         CHECK_OK(tower_open(&p, &single, TOWER_SINGLE, 1, &err), &err);
         run_as_built(&p, k ? &b : NULL, x, &r);
         v[k] = r.j3_g;
-        problem_close(&p);
     }
     mean_and_sd_of(REPLICATES, v, &mean, &sd);
     assert_close(out.sum[0].mean[MEASURE_J3], mean + sd, 1e-12);
@@ -310,7 +303,8 @@ static void write_design(void)
 /* Mean and deviation of every objective as `imtet simulate --replicates 6` has them. */
 static void simulated(const char *set, double mean[PAPER_OBJECTIVES], double sd[PAPER_OBJECTIVES])
 {
-    char *text = output_of("simulate configs/quick.ini --design @/design.csv --replicates 6 --json " SHORT "%s", set);
+    FREED char *text =
+        output_of("simulate configs/quick.ini --design @/design.csv --replicates 6 --json " SHORT "%s", set);
     json_t *o = json_loads(text, 0, NULL), *e = json_object_get(o, "replicates");
     assert_non_null(e);
     for (int k = 0; k < PAPER_OBJECTIVES; k++) {
@@ -318,7 +312,6 @@ static void simulated(const char *set, double mean[PAPER_OBJECTIVES], double sd[
         sd[k] = json_real_value(json_object_get(json_object_get(e, "sd"), measure(k)->name));
     }
     json_decref(o);
-    free(text);
 }
 
 TEST(simulate_draws_the_replicates_of_a_study_and_knows_the_tolerance)
@@ -336,10 +329,9 @@ TEST(simulate_draws_the_replicates_of_a_study_and_knows_the_tolerance)
         output_of("optimize configs/quick.ini --out @/study --threads 2 --set search.start=%s/design.csv --max-evals 4 "
                   "--set search.initial=4 --set search.population=4 --set sim.replicates=6 " SHORT "%s",
                   place.folder, TOLERANCE));
-    Run h = run_in("study");
+    OWNED(run_free) Run h = run_in("study");
     assert_memory_equal(h.F, mean[2], sizeof mean[2]);
     assert_memory_equal(h.table.sd, sd[2], sizeof sd[2]);
-    run_free(&h);
 }
 
 /* The CSV of `imtet simulate` with these words. */
@@ -351,18 +343,14 @@ static char *csv_of(const char *set)
 TEST(replicates_and_records_follow_one_rule_however_they_are_asked_for)
 {
     write_design();
-    char *by_option = csv_of("--replicates 3 --set sim.gap_tolerance_m=0.02");
-    char *by_set = csv_of("--set sim.replicates=3 --set sim.gap_tolerance_m=0.02");
+    FREED char *by_option = csv_of("--replicates 3 --set sim.gap_tolerance_m=0.02");
+    FREED char *by_set = csv_of("--set sim.replicates=3 --set sim.gap_tolerance_m=0.02");
     assert_string_equal(by_option, by_set);
     assert_non_null(strstr(by_set, ",1,3,mean,as built,"));
-    free(by_option);
-    free(by_set);
-    char *records = csv_of("--set motion.records=builtin:elcentro-like --set sim.robust=worst");
+    FREED char *records = csv_of("--set motion.records=builtin:elcentro-like --set sim.robust=worst");
     assert_non_null(strstr(records, ",2,1,worst,predictability,"));
-    free(records);
-    char *alone = csv_of("");
+    FREED char *alone = csv_of("");
     assert_null(strstr(alone, "_mean"));
-    free(alone);
     expect(2, "needs a design with gaps", "simulate configs/quick.ini --design none --set sim.replicates=4");
     expect(2, "needs a design with gaps", "simulate configs/quick.ini --design @/design.csv --rigid --replicates 4");
 }

@@ -77,15 +77,13 @@ static Importance importance_of_plane(double a, double b, double c)
 /* Var (a x1 + b x2) = (a^2 + b^2) / 12; of x1 x2: Var 7/144, each alone 3/144, together 1/144. */
 TEST(importance_is_the_share_of_the_variance_that_a_variable_has_a_part_in)
 {
-    Importance sum = importance_of_plane(1, 2, 0), product = importance_of_plane(0, 0, 1);
+    OWNED(importance_free) Importance sum = importance_of_plane(1, 2, 0), product = importance_of_plane(0, 0, 1);
     assert_true(sum.n_centres == 200 && sum.explained[0] > 0.999 && product.explained[0] > 0.99);
     assert_close(sum.total[0], 0.2, 0.1);
     assert_close(sum.total[1], 0.8, 0.1);
     assert_true(sum.total[2] < 1e-4 && product.total[2] < 1e-3);
     assert_close(product.total[0], 4.0 / 7, 0.1);
     assert_close(product.total[1], 4.0 / 7, 0.1);
-    importance_free(&sum);
-    importance_free(&product);
 }
 
 static double energy(const Track *h, size_t i, EnergyKind k)
@@ -95,7 +93,7 @@ static double energy(const Track *h, size_t i, EnergyKind k)
 
 TEST(energies_add_up_to_the_input_at_every_instant_and_end_as_the_result_says)
 {
-    Scenario w;
+    OWNED(scenario_close) Scenario w;
     Track h;
     const SceneOptions options = settings_scene(tower.settings);
     CHECK_OK(scenario_of(&w, &options, &tower.settings->motion, &err), &err);
@@ -127,7 +125,6 @@ TEST(energies_add_up_to_the_input_at_every_instant_and_end_as_the_result_says)
         assert_close(most, result->peak_displacement_m[5], 0.02);
         track_free(&h);
     }
-    scenario_close(&w);
 }
 
 TEST(the_chosen_design_is_simulated_as_the_search_did)
@@ -167,8 +164,8 @@ TEST(the_page_holds_the_rows_of_the_front_to_the_last_digit)
 {
     static const char *const RUNS[] = {"tower", "dtlz"};
     for (int i = 0; i < 2; i++) {
-        char *page = file_of(RUNS[i], "report.html");
-        char *front = file_of(RUNS[i], "front.csv"), *rows = between(page, "id=\"rows\">\n", "</script>");
+        FREED char *page = file_of(RUNS[i], "report.html");
+        FREED char *front = file_of(RUNS[i], "front.csv"), *rows = between(page, "id=\"rows\">\n", "</script>");
         const char *whole = front;
         for (char *row = strtok(rows, "\n"); row;
              row = strtok(NULL, "\n")) { /* in the file cells of errors follow, empty ones too */
@@ -177,28 +174,23 @@ TEST(the_page_holds_the_rows_of_the_front_to_the_last_digit)
             assert_true(whole[strlen(row)] == '\n' || (i == 0 && whole[strlen(row)] == ','));
         }
         assert_string_equal(strchr(whole, '\n'), "\n");
-        free(rows);
-        free(front);
-        free(page);
     }
 }
 
 static json_t *run_of(const char *run)
 {
     json_error_t error;
-    char *page = file_of(run, "report.html"), *text = between(page, "id=\"run\">", "</script>");
+    FREED char *page = file_of(run, "report.html"), *text = between(page, "id=\"run\">", "</script>");
     json_t *all = json_loads(text, 0, &error);
     if (!all)
         fail_msg("%s: %s", run, error.text);
-    free(text);
-    free(page);
     return all;
 }
 
 /* 20000 samples of a box: the standard error of a share. */
 TEST(growth_is_the_hypervolume_that_status_tells)
 {
-    Run run;
+    OWNED(run_free) Run run;
     char path[PATH_MAX];
     json_t *page = run_of("dtlz"), *growth = json_object_get(page, "convergence");
     json_t *simulated = json_object_get(growth, "simulated"), *volume = json_object_get(growth, "volume");
@@ -213,14 +205,13 @@ TEST(growth_is_the_hypervolume_that_status_tells)
         assert_close(json_number_value(json_array_get(error, i)), sqrt(v * (1 - v) / 20000), 1e-5);
         assert_same_number(json_number_value(json_array_get(simulated, i)), (double)run.generation[i].simulated);
     }
-    run_free(&run);
     json_decref(page);
 }
 
 TEST(the_page_has_the_errors_of_front_csv)
 {
-    Table t = table_of("tower/front.csv");
-    json_t *page = run_of("tower");
+    OWNED(table_free) Table t = table_of("tower/front.csv");
+    json_auto_t *page = run_of("tower");
     const json_t *names = json_object_get(json_object_get(page, "schema"), "objectives");
     const json_t *errors = json_object_get(page, "chosen_error");
     const double chosen = json_number_value(json_object_get(page, "chosen"));
@@ -236,8 +227,6 @@ TEST(the_page_has_the_errors_of_front_csv)
         assert_close(json_number_value(json_array_get(errors, k)), t.values[row * t.n_cols + (size_t)column], 1e-5);
     }
     assert_string_equal(json_string_value(json_object_get(page, "rule")), "");
-    table_free(&t);
-    json_decref(page);
 }
 
 TEST(an_objective_of_several_simulations_says_of_which)
@@ -274,7 +263,7 @@ TEST(notes_that_are_damaged_or_of_other_designs_are_named_by_the_report)
 
 TEST(the_most_records_of_a_study_and_as_many_others_are_elsewhere)
 {
-    OtherRecords *r = calloc(1, sizeof *r);
+    FREED OtherRecords *r = calloc(1, sizeof *r);
     Settings s;
     settings_defaults(&s);
     MotionOptions study = s.motion;
@@ -284,24 +273,22 @@ TEST(the_most_records_of_a_study_and_as_many_others_are_elsewhere)
         for (int i = 1; i < TOWER_RECORDS_MAX; i++)
             snprintf(list + strlen(list), 40, "builtin:%s-like factor=%d\n", NAMES[k], i);
         write_in_place("many_list.txt", list);
-        char *path = in_place("many_list.txt");
+        FREED char *path = in_place("many_list.txt");
         snprintf(study.records, sizeof study.records, "%s", path);
         CHECK_OK(k == 0 ? elsewhere_of_study(r, &study, &err) : elsewhere_add(r, path, &err), &err);
         assert_int_equal(r->n, (k + 1) * (TOWER_RECORDS_MAX - 1));
-        free(path);
     }
     assert_string_equal(r->source[r->n - 1], "builtin:sylmar-like factor=63");
     CHECK_OK(elsewhere_add(r, r->source[5], &err), &err); /* what is there, and the first record of the study */
     CHECK_OK(elsewhere_add(r, study.record, &err), &err);
     assert_int_equal(r->n, 2 * (TOWER_RECORDS_MAX - 1));
-    free(r);
 }
 
 /* Other words behind the path, another channel or factor, make another record of the same file. */
 TEST(a_record_counts_once_under_two_names_and_the_second_is_said)
 {
     static const char OTHER[] = "0,0\n0.01,1\n0.02,-2\n0.03,0\n";
-    OtherRecords *r = calloc(1, sizeof *r);
+    FREED OtherRecords *r = calloc(1, sizeof *r);
     char *own = in_place("own.csv"), *twin = in_place("twin.csv"), *other = in_place("other.csv"), twice[200];
     MotionOptions study = tower.settings->motion;
     write_in_place("other.csv", OTHER);
@@ -319,7 +306,6 @@ TEST(a_record_counts_once_under_two_names_and_the_second_is_said)
     free(own);
     free(twin);
     free(other);
-    free(r);
 }
 
 /* The band of the page ends where the worst of the records, simulated each on its own, ends; the standard error of their
@@ -376,12 +362,12 @@ static double extreme(const Run *run, size_t n, const size_t rows[], size_t colu
 
 TEST(a_thinned_front_keeps_every_range_the_knee_and_what_is_asked_for)
 {
-    Run run;
+    OWNED(run_free) Run run;
     char path[PATH_MAX];
     CHECK_OK(run_read(&run, path_of("dtlz", path), &err), &err);
     const size_t n_columns = run.schema.n_obj + run.schema.n_var, most = 2 * n_columns + 4;
     const size_t kept[] = {run_knee(&run), run.front[1]};
-    size_t *rows = calloc(run.n_front, sizeof *rows);
+    FREED size_t *rows = calloc(run.n_front, sizeof *rows);
     assert_true(rows && run.n_front > most + 4);
     assert_int_equal(thin_front(&run, run.n_front, kept, rows), run.n_front);
     assert_memory_equal(rows, run.front, run.n_front * sizeof *rows);
@@ -393,8 +379,6 @@ TEST(a_thinned_front_keeps_every_range_the_knee_and_what_is_asked_for)
     for (size_t c = 0; c < n_columns; c++)
         for (int s = -1; s <= 1; s += 2)
             assert_same_number(extreme(&run, n, rows, c, s), extreme(&run, run.n_front, run.front, c, s));
-    free(rows);
-    run_free(&run);
 }
 
 /* The command, which opens the file as often at most, as far as strace can tell. */
@@ -410,10 +394,9 @@ static void expect_openings(size_t most, const char *file, const char *arguments
              place.folder);
     expect(0, "", arguments);
     place.under[0] = 0;
-    char *trace = read_in_place("trace");
+    FREED char *trace = read_in_place("trace");
     for (const char *at = trace; (at = strstr(at, file)); at++)
         n++;
-    free(trace);
     if (n == 0 || n > most)
         fail_msg("%s: opens %s %zu times", arguments, file, n);
 }
@@ -422,7 +405,7 @@ TEST(a_report_needs_the_database_alone)
 {
     shell_in_place("mkdir bare && cp tower/run.sqlite bare");
     expect_openings(1, "run.sqlite\"", "report @/bare --design knee --record @/own.csv --unit m_s2");
-    json_t *bare = run_of("bare"), *whole = run_of("tower");
+    json_auto_t *bare = run_of("bare"), *whole = run_of("tower");
     static const char *const PARTS[] = {"schema", "knee",     "evaluated", "convergence",
                                         "detail", "settings", "provenance"};
     json_object_del(json_object_get(bare, "detail"), "verdict"); /* its last line names the folder */
@@ -431,8 +414,6 @@ TEST(a_report_needs_the_database_alone)
         if (!json_equal(json_object_get(bare, PARTS[i]), json_object_get(whole, PARTS[i])))
             fail_msg("%s differs", PARTS[i]);
     assert_int_equal(json_integer_value(json_object_get(bare, "evaluated")), 60);
-    json_decref(bare);
-    json_decref(whole);
 }
 
 /* report: where its files are looked at. */
@@ -460,25 +441,21 @@ TEST(a_study_reads_its_record_once_for_every_accuracy_that_it_needs)
 
 TEST(the_policy_allows_nothing_but_hashes)
 {
-    char *page = read_in_place("tower/report.html"),
-         *policy = between(page, "Content-Security-Policy\" content=\"", "\"");
+    FREED char *page = read_in_place("tower/report.html"),
+               *policy = between(page, "Content-Security-Policy\" content=\"", "\"");
     assert_non_null(strstr(policy, "default-src 'none'"));
     assert_null(strstr(policy, "unsafe-inline"));
     assert_null(strstr(policy, "'unsafe-eval"));
     assert_null(strstr(policy, "http"));
     assert_null(strstr(policy, "*"));
-    free(policy);
-    free(page);
 }
 
 TEST(a_run_of_another_problem_has_no_tower_in_its_report)
 {
-    json_t *with = run_of("tower"), *dtlz = run_of("dtlz");
+    json_auto_t *with = run_of("tower"), *dtlz = run_of("dtlz");
     assert_true(json_is_true(json_object_get(with, "tower")) && json_is_object(json_object_get(with, "detail")));
     assert_true(json_is_false(json_object_get(dtlz, "tower")) && json_is_null(json_object_get(dtlz, "detail")));
     assert_less(1, json_array_size(json_object_get(json_object_get(dtlz, "convergence"), "volume")));
-    json_decref(with);
-    json_decref(dtlz);
 }
 
 /* Names of objectives are free text; what is written of them must neither end the script nor open a comment. */
@@ -489,14 +466,12 @@ TEST(names_cannot_break_out_of_the_page)
                5, 4) "--set \"problem.objective_names=</script><b>, <!--x,'=c,-d\" --max-evals 30 "
                      "--set search.population=8 --set search.initial=20 --out @/names");
     expect(0, "", "report @/names");
-    json_t *run = run_of("names");
+    json_auto_t *run = run_of("names");
     const json_t *objectives = json_object_get(json_object_get(run, "schema"), "objectives");
     assert_string_equal(json_string_value(json_object_get(json_array_get(objectives, 0), "name")), "</script><b>");
-    char *settings = read_in_place("names/report.html");
+    FREED char *settings = read_in_place("names/report.html");
     assert_null(strstr(settings, "</script><b>"));
     assert_null(strstr(settings, "<!--x"));
-    free(settings);
-    json_decref(run);
 }
 
 TEST(designs_and_records_that_are_not_there_are_refused)
@@ -546,7 +521,7 @@ TEST(a_dossier_has_the_design_by_fine_and_by_cvode_limits_and_what_is_not_covere
                                         "matrices_fnv1a",
                                         "</html>"};
     expect(0, "", "report @/tower --dossier @/dossier.html --record builtin:elcentro-like");
-    char *page = read_in_place("dossier.html");
+    FREED char *page = read_in_place("dossier.html");
     const char *at = page;
     for (size_t i = 0; i < N_OF(PARTS); i++) {
         const char *next = strstr(at, PARTS[i]);
@@ -557,13 +532,11 @@ TEST(a_dossier_has_the_design_by_fine_and_by_cvode_limits_and_what_is_not_covere
     assert_null(strstr(page, "nan (nan"));
     assert_null(strstr(page, "tuned mass 0 t")); /* there is none */
     expect(2, "name the file .html or .pdf", "report @/tower --dossier @/dossier.txt");
-    json_t *fine = json_of("simulate @/tower/settings.ini --design @/tower:knee --set sim.accuracy=fine --json");
+    json_auto_t *fine = json_of("simulate @/tower/settings.ini --design @/tower:knee --set sim.accuracy=fine --json");
     const double wanted = number(fine, "j1_m");
     assert_close(first_cell(page, PARTS[2], "accuracy fine"), wanted, 5e-3); /* three digits */
     assert_close(first_cell(page, PARTS[2], "by CVODE (SUNDIALS)"), wanted, 5e-3);
     assert_close(cell(page, "<h1>", "no core", 2), report.detail.result[SCENE_NO_CORE].j1_m, 5e-3);
-    json_decref(fine);
-    free(page);
 }
 
 /* Coarse, so that the run knows its knee by other steps than those of its accuracy. */
@@ -579,16 +552,15 @@ TEST(a_dossier_of_several_records_has_what_the_study_judges_and_the_largest_dema
            "--set motion.records=builtin:sylmar-like,builtin:elcentro-like --set sim.robust=worst "
            "--set search.objectives=j1_m,mcore_kg --set 'search.limits=p(drift_ratio>0.2)<=0.5' --out @/several");
     expect(0, "", "report @/several --dossier @/several.html");
-    char *page = read_in_place("several.html");
+    FREED char *page = read_in_place("several.html");
     for (size_t i = 0; i < N_OF(RECORDS); i++) {
         snprintf(arguments, sizeof arguments,
                  "simulate @/several/settings.ini --design @/several:knee --set motion.records=none --record "
                  "builtin:%s-like --json",
                  RECORDS[i]);
-        json_t *alone = json_of("%s", arguments);
+        json_auto_t *alone = json_of("%s", arguments);
         j1 = fmax(j1, number(alone, "j1_m"));
         stress = fmax(stress, number(alone, "core_stress_pa"));
-        json_decref(alone);
     }
     assert_close(cell(page, "<h1>", "this design", 2), j1, 5e-3);
     assert_close(first_cell(page, "Forces and stresses", "core stress [MPa]"), 1e-6 * stress, 5e-3);
@@ -597,14 +569,11 @@ TEST(a_dossier_of_several_records_has_what_the_study_judges_and_the_largest_dema
     assert_non_null(strstr(page, "Values as the study judges them: worst of 3 records."));
     assert_non_null(strstr(page, "Forces and strokes under builtin:kobe-like, the first of 3 records."));
     assert_int_equal(sscanf(strstr(page, "<code>imtet "), "<code>imtet %799[^<]", command), 1);
-    json_t *again = json_of("%s", command);
+    json_auto_t *again = json_of("%s", command);
     assert_close(cell(page, "The response by", "accuracy fine", 6), number(again, "ed5_10_pct"), 5e-3);
     assert_int_equal(cell(page, "The response by", "accuracy fine", 8), number(again, "impacts"));
-    json_decref(again);
-    char *said = output_of("simulate @/several/settings.ini --design @/several:knee");
+    FREED char *said = output_of("simulate @/several/settings.ini --design @/several:knee");
     assert_non_null(strstr(said, "of replacement; under builtin:kobe-like\n"));
-    free(said);
-    free(page);
 }
 
 TEST(a_dossier_of_a_design_that_was_screened_only_says_so)
@@ -617,15 +586,14 @@ TEST(a_dossier_of_a_design_that_was_screened_only_says_so)
            "motion.records=builtin:sylmar-like,builtin:kobe-like "
            "--set search.fidelity=records --set search.objectives=j1_m,mcore_kg --out @/screened");
     expect(0, "", "report @/screened --design 1 --dossier @/screened.html");
-    char *page = read_in_place("screened.html");
+    FREED char *page = read_in_place("screened.html");
     assert_non_null(strstr(page, "of 3 records, of which this design, only screened, has seen a part.</p>"));
-    free(page);
 }
 
 /* Links on the floors of a zone or none at all; the building alone costs nothing. */
 TEST(a_design_of_links_is_said_to_be_one_and_its_dossier_has_their_constants_and_forces)
 {
-    char *said = output_of(
+    FREED char *said = output_of(
         "optimize configs/quick.ini " SIX_FLOORS "--max-evals 8 --set search.population=8 --set search.initial=8 --set "
         "search.polish=0 --set motion.stretch=0.5 --set sim.duration_s=2 --record builtin:elcentro-like --set "
         "design.variables=gaps,thickness,links --set "
@@ -634,7 +602,7 @@ TEST(a_design_of_links_is_said_to_be_one_and_its_dossier_has_their_constants_and
     assert_non_null(strstr(said, "Against no core J1 \u00d7 0."));
     assert_null(strstr(said, "never_closing"));
     expect(0, "", "report @/links --dossier @/links.html");
-    char *page = read_in_place("links.html");
+    FREED char *page = read_in_place("links.html");
     assert_non_null(strstr(page, "<th>floor</th><th>link [MN (s/m)^n]</th><th>link force [MN]"));
     assert_non_null(strstr(page, "on floors: none."));
     assert_null(strstr(page, "contact force right [MN]</th>"));
@@ -644,8 +612,6 @@ TEST(a_design_of_links_is_said_to_be_one_and_its_dossier_has_their_constants_and
                      3);
     assert_close(force, first_cell(page, "Forces and stresses", "force of a link or tuned mass [MN]"), 5e-3);
     assert_close(stroke, 1e3 * first_cell(page, "Forces and stresses", "stroke of a link or tuned mass [m]"), 5e-3);
-    free(page);
-    free(said);
 }
 
 /* What the shell says of the test's folder, "9\n". */
@@ -698,7 +664,7 @@ TEST(pictures_are_drawn_as_svg_and_png_each)
     expect(0, "", "report @/names --pictures @/names/pictures");
     for (size_t i = 0; i < N_OF(NAMES); i++) {
         snprintf(name, sizeof name, "tower/pictures/%s.svg", NAMES[i]);
-        char *svg = read_in_place(name);
+        FREED char *svg = read_in_place(name);
         snprintf(wide, sizeof wide, " width=\"%d\"", WIDTHS[i]);
         if (!strstr(svg, wide) || strstr(svg, "<foreignObject"))
             fail_msg("%s is not as wide, or no plain SVG", name);
@@ -713,7 +679,6 @@ TEST(pictures_are_drawn_as_svg_and_png_each)
             expect_floors(svg, "<title>floor %d: ", 1e3, report.detail.gap_side_m[0]);
             expect_floors(svg, "<title>thickness, floor %d: ", 1e3, report.detail.thickness_m);
         }
-        free(svg);
     }
     /* Nothing is left of the page that was drawn. */
     expect_said("16\n", "ls tower/pictures | wc -l");

@@ -304,7 +304,7 @@ static void check_this_is_refused_everywhere(double number)
     run(&here, &c, NULL, &whole);
     memset(&resumed, 0, sizeof resumed);
     SearchStart start = moment(&whole, whole.moments.n / 2);
-    unsigned char *forged = malloc(start.n_state);
+    FREED unsigned char *forged = malloc(start.n_state);
     assert_non_null(forged);
     for (size_t at = 0; at + sizeof number <= start.n_state; at += sizeof number) {
         memcpy(forged, start.state, start.n_state);
@@ -313,7 +313,6 @@ static void check_this_is_refused_everywhere(double number)
         other.state = forged;
         refuse(&c, &other);
     }
-    free(forged);
     forget(&whole);
 }
 

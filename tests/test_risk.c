@@ -79,7 +79,7 @@ TEST(a_study_minimises_and_limits_probabilities)
                    "[search]\nobjectives = p(drift_ratio>0.012), j3_g\nlimits = p(j1_m>0.1)<=0.75\n"
                    "initial = 8\npopulation = 8\nmax_evals = 12\nthreads = 2\npolish = 0\n");
     free(output_of("optimize @/tower.ini --out @/chance"));
-    Run run = run_in("chance");
+    OWNED(run_free) Run run = run_in("chance");
     const Schema *s = &run.schema;
     assert_string_equal(schema_objective(s, 0)->name, "p(drift_ratio>0.012)");
     assert_int_equal(s->n_limited, 1);
@@ -88,12 +88,10 @@ TEST(a_study_minimises_and_limits_probabilities)
         const double p = 4 * run_f(&run, i)[0], q = 4 * run.table.row[i].extra[s->limited[0]];
         assert_true(p == floor(p) && p >= 0 && p <= 4 && q == floor(q) && q >= 0 && q <= 4);
     }
-    run_free(&run);
-    json_t *o = json_of("simulate @/tower.ini --design @/chance:knee --json");
+    json_auto_t *o = json_of("simulate @/tower.ini --design @/chance:knee --json");
     json_t *replicates = json_object_get(o, "replicates");
     assert_string_equal(json_string_value(json_object_get(replicates, "rule")), "cvar");
     assert_less(0, number(json_object_get(replicates, "standard_error"), "j3_g"));
-    json_decref(o);
     expect(65, "is no p(NAME>NUMBER) with a column as NAME",
            "optimize @/tower.ini --set 'search.objectives=p(drift_ratio>)' --out @/no");
     expect(65, "more than 4 probabilities",
@@ -328,14 +326,13 @@ static void expect_key_above_the_panels(void)
 {
     static const char *const WORDS[] = {"with core", "rigidly connected", "without core", "viscous links"};
     free(output_of(CURVES "--svg @/curves.svg"));
-    char *svg = read_in_place("curves.svg");
+    FREED char *svg = read_in_place("curves.svg");
     const double title = height_of(svg, "drift_ratio &gt; 0.012");
     for (size_t i = 0; i < sizeof WORDS / sizeof WORDS[0]; i++)
         assert_less(height_of(svg, WORDS[i]), title - 10);
     const char *height = strstr(svg, "height=\"");
     assert_non_null(height);
     assert_less(title + 300, strtod(height + 8, NULL)); /* [px] the panels are on the picture */
-    free(svg);
 }
 
 /* L of a record in the middle of many short pieces of the hazard curve of the test, 0.001 / x to 0.1 g, then 0.0001 /
@@ -426,7 +423,7 @@ TEST(curves_are_of_the_simulations_beside_them_and_links_are_the_same_everywhere
 /* So begins the row of the building alone, whose rate is not known. */
 static void expect_alone(const char *words, const char *range, const char *limit)
 {
-    char *said = output_of(ON_TWO "--sa %s --fragility %s --hazard @/hazard.csv", range, limit);
+    FREED char *said = output_of(ON_TWO "--sa %s --fragility %s --hazard @/hazard.csv", range, limit);
     const char *row = strstr(said, "no core");
     char *end = row ? strchr(row, '\n') : NULL;
     assert_non_null(end);
@@ -436,20 +433,18 @@ static void expect_alone(const char *words, const char *range, const char *limit
     if (strncmp(row, words, strlen(words)) != 0)
         fail_msg("%s: not '%s'", row, words);
     assert_non_null(strstr(row, " -")); /* no rate */
-    free(said);
 }
 
 TEST(intensities_that_are_too_far_apart_are_told_by_bounds_and_without_a_rate)
 {
     write_in_place("two_list.txt", "builtin:elcentro-like\nbuiltin:sylmar-like\n");
-    json_t *o = json_of(ON_TWO "--sa 0.1 --json");
+    json_auto_t *o = json_of(ON_TWO "--sa 0.1 --json");
     const json_t *records = json_object_get(o, "records");
     double sum = 0; /* one of two exceeds the half of it at 0.1 g */
     char limit[32];
     for (size_t i = 0; i < 2; i++)
         sum += number(json_object_get(json_array_get(records, i), "no_core"), "j1_m");
     snprintf(limit, sizeof limit, "j1_m=%.9g", sum / 2);
-    json_decref(o);
     expect_alone("between 0.01 and 1.01: finer steps", "0.01:1:1.01", limit);
     expect_alone("between 0.01 and 0.19: finer steps", "0.01:0.09:0.2", limit);
     expect_alone("below 1: begin lower", "0.1:0.9:1", limit);
@@ -461,17 +456,14 @@ TEST(intensities_that_are_too_far_apart_are_told_by_bounds_and_without_a_rate)
 
 TEST(one_spectral_acceleration_is_a_scaling_at_the_first_period_of_the_building)
 {
-    json_t *o = json_of(SUITE_LIST "--sa 0.2 --json"), *b = json_of("building @/tower.ini --json");
+    json_auto_t *o = json_of(SUITE_LIST "--sa 0.2 --json"), *b = json_of("building @/tower.ini --json");
     const json_t *hz = json_object_get(b, "building_hz");
     const double T = 1 / json_number_value(json_array_get(hz, 0));
-    Motion m;
+    OWNED(motion_free) Motion m;
     CHECK_OK(motion_load(&m, "builtin:elcentro-like", UNIT_FROM_FILE, &err), &err);
     double at = 0;
     spectrum_psa(&m, 0.05, 1, &T, &at);
     assert_close(number(json_array_get(json_object_get(o, "records"), 0), "scale"), 0.2 * 9.81 / at, 1e-6);
-    motion_free(&m);
-    json_decref(o);
-    json_decref(b);
     expect(2, "--sa and --pga do not go together", SUITE_LIST "--sa 0.2 --pga 0.3");
     expect(2, "--fragility needs intensities", SUITE_LIST "--sa 0.2 --fragility j3_g=1");
     expect(2, "is not a list of NAME=NUMBER", SUITE_LIST "--sa 0.1:0.1:0.2 --fragility j3_g");
@@ -495,10 +487,9 @@ TEST(a_file_of_a_folder_that_cannot_be_read_is_listed_beside_the_levels_of_the_o
         snprintf(motion + strlen(motion), sizeof motion - strlen(motion), "%.2f,%.6f\n", 0.02 * i, sin(0.3 * i));
     write_in_place("some/a.txt", "no numbers here\n1 2 x\n");
     write_in_place("some/b.csv", motion);
-    json_t *o = json_of(FOLDER "--json");
+    json_auto_t *o = json_of(FOLDER "--json");
     assert_int_equal(json_array_size(json_object_get(o, "unreadable")), 1);
     assert_int_equal(json_array_size(json_object_get(o, "records")), 2);
-    json_decref(o);
     free(output_of(FOLDER "--csv -"));
 }
 
@@ -520,13 +511,12 @@ TEST(the_annual_loss_of_a_study_is_the_sum_over_its_records_of_rate_and_loss)
     free(output_of("optimize " YEARS "--set search.fidelity=records --set 'search.limits=annual_loss<=0.01' "
                    "--out @/years"));
     for (int i = 0; i < 3; i++) {
-        json_t *o =
+        json_auto_t *o =
             json_of("simulate @/tower.ini --design @/years:knee --json --set motion.records=none --set motion.pga_g=0 "
                     "--set 'motion.record=%s'",
                     SOURCE[i]);
         assert_true(json_is_null(json_object_get(o, "annual_loss")));
         sum += RATE[i] * number(o, "loss");
-        json_decref(o);
     }
     json_t *o = json_of("simulate " YEARS "--design @/years:knee --json"), *mean = json_object_get(o, "replicates");
     assert_close(number(json_object_get(mean, "mean"), "annual_loss"), sum, 1e-12);
@@ -642,7 +632,7 @@ TEST(demands_for_pelicun_have_a_row_per_record_and_read_back_as_they_were_printe
     static const char HEAD[] = ",1-PFA-0-1,1-PFA-1-1,1-PFA-2-1,1-PFA-3-1,1-PFA-4-1,1-PFA-5-1,1-PFA-6-1,1-PID-1-1,"
                                "1-PID-2-1,1-PID-3-1,1-PID-4-1,1-PID-5-1,1-PID-6-1\n"
                                "Units,g,g,g,g,g,g,g,unitless,unitless,unitless,unitless,unitless,unitless\n0,";
-    json_t *o = json_of(SUITE_LIST "--pga 0.3 --pelicun @/pelicun.csv --json");
+    json_auto_t *o = json_of(SUITE_LIST "--pga 0.3 --pelicun @/pelicun.csv --json");
     char *text = read_in_place("pelicun.csv"), *row = text + strlen(HEAD) - 2;
     assert_true(strncmp(text, HEAD, strlen(HEAD)) == 0);
     for (int i = 0; i < 3; i++) {
@@ -660,7 +650,7 @@ TEST(demands_for_pelicun_have_a_row_per_record_and_read_back_as_they_were_printe
     assert_int_equal(*row, 0);
     free(text);
     free(output_of(SUITE_LIST "--pga 0.3 --pelicun @/response.csv"));
-    Table t = table_of("response.csv");
+    OWNED(table_free) Table t = table_of("response.csv");
     const json_t *third = json_object_get(json_array_get(json_object_get(o, "records"), 2), "with_core");
     assert_int_equal(t.n_rows, 3);
     assert_int_equal(t.n_cols, 2 + 3 * 6 + 1);
@@ -670,15 +660,13 @@ TEST(demands_for_pelicun_have_a_row_per_record_and_read_back_as_they_were_printe
     const double roof = json_real_value(json_array_get(json_object_get(third, "peak_displacement_m"), 5));
     assert_close(column_of(&t, "1-PFD-6-1")[last], roof, 1e-12);
     assert_close(column_of(&t, "1-PRD-1-1")[last], roof / (4 + 5 * 3.5), 1e-9);
-    table_free(&t);
-    json_decref(o);
     expect(2, "--pelicun writes one intensity", SUITE_LIST "--pga 0.1:0.1:0.2 --pelicun @/no.csv");
 }
 
 TEST(an_event_for_simcenter_is_read_back_as_the_motion_that_it_is_of)
 {
     free(output_of("spectrum builtin:kobe-like --pga 0.3 --history @/event.json"));
-    Motion m, again;
+    OWNED(motion_free) Motion m, again;
     char path[PATH_MAX];
     CHECK_OK(motion_load(&again, path_of("event.json", path), UNIT_FROM_FILE, &err), &err);
     CHECK_OK(motion_load(&m, "builtin:kobe-like", UNIT_FROM_FILE, &err), &err);
@@ -687,8 +675,6 @@ TEST(an_event_for_simcenter_is_read_back_as_the_motion_that_it_is_of)
     assert_close(motion_peak(&again), 0.3 * 9.81, 1e-12);
     for (size_t i = 0; i < m.n; i++)
         assert_true(fabs(again.accel[i] - m.accel[i] * 0.3 * 9.81 / motion_peak(&m)) < 1e-12);
-    motion_free(&m);
-    motion_free(&again);
 }
 
 SUITE(make_place, clear_place)

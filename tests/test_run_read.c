@@ -70,9 +70,8 @@ TEST(json_for_which_there_is_no_room_is_an_output_that_cannot_be_written)
     FILE *full = fopen("/dev/full", "we");
     assert_non_null(full);
     setvbuf(full, NULL, _IONBF, 0);
-    Run run = run_in("sound");
+    OWNED(run_free) Run run = run_in("sound");
     assert_int_equal(export_json(full, &run, &err), STATUS_IO);
-    run_free(&run);
     assert_string_equal(err.text, "standard output: cannot be written");
     fclose(full);
 }
@@ -80,7 +79,7 @@ TEST(json_for_which_there_is_no_room_is_an_output_that_cannot_be_written)
 /* With three replicates; of the last generation, which is not finished, one row is whole but for its cheap part. */
 TEST(rows_of_a_generation_that_is_not_finished_count_as_what_is_simulated_of_them)
 {
-    Run h = run_in("sound");
+    OWNED(run_free) Run h = run_in("sound");
     const size_t n = run_first_polished(&h), open = n - 9;
     assert_less(11, n);
     for (size_t i = 0; i < n; i++) {
@@ -98,7 +97,6 @@ TEST(rows_of_a_generation_that_is_not_finished_count_as_what_is_simulated_of_the
     h.settings->search.fidelity = FIDELITY_OFF;
     assert_false(settings_screens(h.settings));
     assert_int_equal(run_evaluations(&h, 9), open);
-    run_free(&h);
 }
 
 /* Feasible, whole, and nobody better: by comparing everybody with everybody. */
@@ -126,7 +124,7 @@ TEST(polished_designs_compete_with_the_front_and_can_be_dropped)
     for (size_t i = 0; i < 6; i++)
         designs[i] = (Evaluation){
             .outcome = i == 2 ? OUTCOME_ERROR : OUTCOME_OK, .x = x, .f = f[i], .violation = i == 3 ? 0.5 : 0.0};
-    Run sound, h;
+    OWNED(run_free) Run sound, h;
     char folder[PATH_MAX];
     sound = run_in("sound");
     CHECK_OK(add_to_run(changed("SELECT 1", folder), 6, designs, NULL, &err), &err);
@@ -147,8 +145,6 @@ TEST(polished_designs_compete_with_the_front_and_can_be_dropped)
     assert_true(h.table.n == sound.table.n && h.n_front == sound.n_front && h.n_failed == sound.n_failed);
     for (size_t i = 0; i < h.table.n; i++)
         assert_int_equal(h.place[i].on_front, sound.place[i].on_front);
-    run_free(&h);
-    run_free(&sound);
 }
 
 /* Whether a design of the front of a or b dominates row i of a. */
@@ -166,7 +162,7 @@ static int is_dominated(const Run *a, size_t i, const Run *b)
 
 TEST(several_runs_are_one_front_on_which_a_design_stands_once)
 {
-    Run a, b, both;
+    OWNED(run_free) Run a, b, both;
     size_t n = 0;
     char path[2][PATH_MAX];
     write_in_place("plain.ini", DTLZ2_INI(4, 2));
@@ -198,16 +194,11 @@ TEST(several_runs_are_one_front_on_which_a_design_stands_once)
     const size_t last = both.front[n - 1];
     assert_int_equal(both.table.row[last].id, b.table.row[last - a.table.n].id + both.id_step);
     free(output_of("export @/first @/second --csv @/both.csv"));
-    Table t = table_of("both.csv");
+    OWNED(table_free) Table t = table_of("both.csv");
     assert_int_equal(t.n_rows, n);
     assert_same_number(t.values[(n - 1) * t.n_cols], (double)both.table.row[last].id);
-    table_free(&t);
-    json_t *o = json_of("choose @/first @/second/run.sqlite --json");
+    json_auto_t *o = json_of("choose @/first @/second/run.sqlite --json");
     assert_same_number(number(o, "front"), (double)n);
-    json_decref(o);
-    run_free(&a);
-    run_free(&b);
-    run_free(&both);
 }
 
 TEST(a_folder_without_a_run_or_with_too_long_a_name_is_told)
@@ -229,7 +220,7 @@ TEST(every_number_has_a_column_of_its_name)
     char path[PATH_MAX];
     sqlite3 *db;
     sqlite3_stmt *row;
-    Said s;
+    OWNED(forget) Said s;
     write_in_place("names.ini", DTLZ2_INI(3, 2) "objective_names = a b,it's\n"
                                                 "[search]\ninitial = 12\npopulation = 8\nmax_evals = 12\n");
     write_in_place("many.ini", "[problem]\nkind = external\ncommand = sh tests/worker.sh good\nvariables = 1990\n"
@@ -245,7 +236,6 @@ TEST(every_number_has_a_column_of_its_name)
     run(&s, "optimize @/many.ini --out @/many");
     if (s.code == 65)
         fail_msg("%s", s.err);
-    forget(&s);
     expect(65, "problem.variables = 1991: a run has room for 1990 variables beside 2 objectives",
            "optimize @/many.ini --set problem.variables=1991 --out @/more");
     expect(65, "a run has room for 1990 variables", "check @/many.ini --set problem.variables=1991");

@@ -109,13 +109,11 @@ TEST(names_and_reasons_of_users_are_harmless_in_every_table)
     free(output_of("optimize @/formulas.ini --out @/formulas --threads 1"));
     free(output_of("export @/formulas --csv @/front.csv"));
     free(output_of("export @/formulas --all --csv @/all.csv"));
-    char *front = read_in_place("front.csv"), *all = read_in_place("all.csv");
+    FREED char *front = read_in_place("front.csv"), *all = read_in_place("all.csv");
     assert_non_null(strstr(front, "id,'=cmd(),'+x,'-f,'@g\n"));
     assert_non_null(strstr(all, ",'=1+1;'=2"));
     demand_harmless(front);
     demand_harmless(all);
-    free(front);
-    free(all);
     free(output_of("choose @/formulas"));
 }
 
@@ -136,7 +134,7 @@ static int count_files(const char *folder)
 TEST(a_file_half_written_has_no_name)
 {
     Output o;
-    char *folder = in_place("half"), *path = in_place("half/out.csv");
+    FREED char *folder = in_place("half"), *path = in_place("half/out.csv");
     assert_int_equal(mkdir(folder, 0777), 0);
     const int fd = open(folder, O_TMPFILE | O_WRONLY, 0600);
     if (fd < 0)
@@ -148,11 +146,8 @@ TEST(a_file_half_written_has_no_name)
     assert_int_equal(count_files(folder), 0);
     CHECK_OK(output_close(&o, &err), &err);
     assert_int_equal(count_files(folder), 1);
-    char *text = read_in_place("half/out.csv");
+    FREED char *text = read_in_place("half/out.csv");
     assert_string_equal(text, "1\n");
-    free(text);
-    free(folder);
-    free(path);
 }
 
 SUITE(make_place, clear_place)

@@ -312,7 +312,7 @@ TEST(an_effective_section_shears_by_the_area_that_is_given)
 
 TEST(mode_shapes_are_mass_normalised_and_diagonalise_the_stiffness)
 {
-    Building b;
+    OWNED(building_free) Building b;
     CHECK_OK(load_model(&b, "guyan", &err), &err);
     for (int i = 0; i < b.n; i++)
         for (int j = 0; j < b.n; j++) {
@@ -325,12 +325,11 @@ TEST(mode_shapes_are_mass_normalised_and_diagonalise_the_stiffness)
             assert_less(fabs(m - (i == j)), 1e-9);
             assert_less(fabs(k - (i == j) * b.omega[i] * b.omega[i]), 1e-7 * b.omega[b.n - 1] * b.omega[b.n - 1]);
         }
-    building_free(&b);
 }
 
 TEST(participation_factors_add_up_to_the_whole_mass)
 {
-    Building b;
+    OWNED(building_free) Building b;
     CHECK_OK(load_model(&b, "appendix", &err), &err);
     double from_modes = 0, from_matrix = 0;
     for (int i = 0; i < b.n; i++)
@@ -338,7 +337,6 @@ TEST(participation_factors_add_up_to_the_whole_mass)
     for (int i = 0; i < b.n * b.n; i++)
         from_matrix += b.M[i];
     assert_close(from_modes, from_matrix, 1e-10);
-    building_free(&b);
 }
 
 TEST(bad_buildings_are_refused_with_file_and_fault)

@@ -576,11 +576,11 @@ static void fill_archive(Archive *a, Random *r)
 /* Of designs with the same chance that share keeps the limit and succeeds. */
 TEST(chances_are_the_shares_of_designs_that_succeed_and_keep_a_limit)
 {
-    Archive a;
+    OWNED(pareto_archive_free) Archive a;
     Surrogate *s;
     Population p;
-    Directions vectors;
-    Infill *near;
+    OWNED(directions_free) Directions vectors;
+    FREED Infill *near;
     world_with_limits(&here, 8, 2, 1);
     Random r = random_stream(3, RANDOM_TEST, 2, 0);
     double x[8], likely = 0.0, likely_good = 0.0, unlikely = 0.0, unlikely_good = 0.0;
@@ -610,9 +610,6 @@ TEST(chances_are_the_shares_of_designs_that_succeed_and_keep_a_limit)
                  unlikely);
     population_free(&p);
     surrogate_free(s);
-    free(near);
-    directions_free(&vectors);
-    pareto_archive_free(&a);
 }
 
 TEST(answers_without_any_pattern_fall_back_to_plain_offspring)

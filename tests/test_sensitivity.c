@@ -31,7 +31,7 @@ static const Sensitivity *named(const Sensitivity *list, size_t n, const char *n
 TEST(the_mass_changes_with_the_thickness_as_the_section_says)
 {
     Settings s;
-    Sensitivity *list;
+    FREED Sensitivity *list;
     size_t n;
     double x[N_VAR], base = 0, top = 0;
     short_scene(&s, x, 5);
@@ -45,13 +45,12 @@ TEST(the_mass_changes_with_the_thickness_as_the_section_says)
     }
     assert_close(named(list, n, "t_base_m")->slope[MEASURE_MCORE], base, 1e-9);
     assert_close(named(list, n, "t_top_m")->slope[MEASURE_MCORE], top, 1e-9);
-    free(list);
 }
 
 TEST(without_contact_only_the_building_matters_and_its_slope_is_that_of_the_building_alone)
 {
     Settings s;
-    Sensitivity *list;
+    FREED Sensitivity *list;
     size_t n;
     double x[N_VAR], j1[2];
     short_scene(&s, x, 5);
@@ -63,19 +62,17 @@ TEST(without_contact_only_the_building_matters_and_its_slope_is_that_of_the_buil
     const Sensitivity *damping = named(list, n, "building.damping");
     for (int side = 0; side < 2; side++) {
         Settings other = s;
-        Problem p;
+        OWNED(problem_close) Problem p;
         SimResult r;
         other.building.damping.at[0] += (side ? 0.5 : -0.5) * damping->step;
         CHECK_OK(tower_open(&p, &other, TOWER_SINGLE, 1, &err), &err);
         CHECK_OK(tower_simulate(&p, 1, &(SimTask){.kind = SCENE_NO_CORE, .x = NULL}, &r, &err), &err);
         j1[side] = r.j1_m;
-        problem_close(&p);
     }
     assert_less(damping->slope[MEASURE_J1], 0);
     assert_close(damping->slope[MEASURE_J1], (j1[1] - j1[0]) / damping->step, 1e-6);
     assert_true(isnan(damping->slope[MEASURE_J3]) && list[0].slope[MEASURE_J3] == 0); /* of what changes J3 none */
     assert_less(damping->error[MEASURE_J1], 0.01 * fabs(damping->slope[MEASURE_J1]));
-    free(list);
 }
 
 TEST(the_ground_is_a_parameter_where_there_is_one)
@@ -94,7 +91,7 @@ TEST(the_ground_is_a_parameter_where_there_is_one)
     const Sensitivity *ground = named(list, n, "core.foundation_factor");
     for (int side = 0; side < 2; side++) {
         Settings other = s;
-        Problem p;
+        OWNED(problem_close) Problem p;
         SimResult r;
         other.sim.forces = FORCES_YES;
         snprintf(other.core.foundation, sizeof other.core.foundation, "rotation=%.17g",
@@ -102,7 +99,6 @@ TEST(the_ground_is_a_parameter_where_there_is_one)
         CHECK_OK(tower_open(&p, &other, TOWER_SINGLE, 1, &err), &err);
         CHECK_OK(tower_simulate(&p, 1, &(SimTask){.x = x}, &r, &err), &err);
         rotation[side] = r.forces.base_rotation_rad;
-        problem_close(&p);
     }
     assert_close(ground->slope[MEASURE_BASE_ROTATION], (rotation[1] - rotation[0]) / ground->step, 1e-6);
     free(list);
@@ -112,23 +108,21 @@ TEST(the_ground_is_a_parameter_where_there_is_one)
 TEST(the_strength_of_storeys_is_a_parameter_where_they_yield)
 {
     Settings s;
-    Sensitivity *list;
+    FREED Sensitivity *list;
     size_t n;
     double x[N_VAR];
     SimResult r;
-    Problem p;
+    OWNED(problem_close) Problem p;
     short_scene(&s, x, 5);
     s.building.yield_drift = 0.5;
     CHECK_OK(sensitivity_find(&s, x, 1, &list, &n, &err), &err);
     CHECK_OK(tower_open(&p, &s, TOWER_SINGLE, 1, &err), &err);
     CHECK_OK(tower_simulate(&p, 1, &(SimTask){.x = x}, &r, &err), &err);
-    problem_close(&p);
     const Sensitivity *strength = named(list, n, "building.yield_drift");
     assert_less(0, r.ductility);
     assert_close(strength->slope[MEASURE_DUCTILITY], -r.ductility / 0.5, 1e-3);
     assert_same_number(strength->slope[MEASURE_HYSTERESIS], 0);
     assert_less(fabs(strength->slope[MEASURE_J1]), 1e-6 * r.j1_m);
-    free(list);
 }
 
 TEST(with_contact_the_slopes_are_differences_of_simulations_on_any_number_of_threads)
@@ -150,14 +144,13 @@ TEST(with_contact_the_slopes_are_differences_of_simulations_on_any_number_of_thr
     CHECK_OK(sensitivity_find(&s, x, 1, &two, &n, &err), &err);
     for (int side = 0; side < 2; side++) {
         double changed[N_VAR];
-        Problem p;
+        OWNED(problem_close) Problem p;
         SimResult r;
         memcpy(changed, x, sizeof x);
         changed[FLOORS - 1] += (side ? 0.5e-3 : -0.5e-3);
         CHECK_OK(tower_open(&p, &s, TOWER_SINGLE, 1, &err), &err);
         CHECK_OK(tower_simulate(&p, 1, &(SimTask){.kind = SCENE_IMPACT, .x = changed}, &r, &err), &err);
         j1[side] = r.j1_m;
-        problem_close(&p);
     }
     assert_close(two[FLOORS - 1].slope[MEASURE_J1], (j1[1] - j1[0]) / 1e-3, 1e-9);
     free(one);

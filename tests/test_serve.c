@@ -167,10 +167,9 @@ static char *post(const char *path, const char *body)
 
 static void expect_code(int wanted, const char *method, const char *path, const char *headers)
 {
-    char *answer = ask(method, path, headers, "");
+    FREED char *answer = ask(method, path, headers, "");
     if (code_of(answer) != wanted)
         fail_msg("%s %s with %s: %.200s, wanted %d", method, path, headers, answer, wanted);
-    free(answer);
 }
 
 static json_t *json_of_answer(char *answer)
@@ -192,9 +191,8 @@ static json_t *ask_json(const char *path)
 
 static json_t *post_json(const char *path, json_t *question)
 {
-    char *body = json_dumps(question, JSON_REAL_PRECISION(17));
+    FREED char *body = json_dumps(question, JSON_REAL_PRECISION(17));
     json_t *answer = json_of_answer(post(path, body));
-    free(body);
     json_decref(question);
     return answer;
 }
@@ -252,10 +250,9 @@ TEST(no_request_leads_to_a_file)
 
 static void expect_header(const char *wanted, const char *method, const char *path)
 {
-    char *answer = ask(method, path, "", "");
+    FREED char *answer = ask(method, path, "", "");
     if (!strstr(answer, wanted))
         fail_msg("%s %s: %.300s, wanted %s", method, path, answer, wanted);
-    free(answer);
 }
 
 TEST(every_address_says_which_methods_it_knows)
@@ -303,7 +300,7 @@ TEST(an_address_without_its_last_slash_leads_to_the_one_with_it)
 TEST(what_is_too_large_is_not_read)
 {
     enum { MUCH = 1 << 20 };
-    char *much = malloc(MUCH + 1), *headers = malloc(MUCH + 64);
+    FREED char *much = malloc(MUCH + 1), *headers = malloc(MUCH + 64);
     memset(much, 'x', MUCH);
     much[MUCH] = 0;
     expect_code(413, "POST", "/%T/0/notes", "Content-Length: 1000000000\r\n");
@@ -328,8 +325,6 @@ TEST(what_is_too_large_is_not_read)
     answer = hear(fd);
     assert_int_equal(code_of(answer), 413);
     free(answer);
-    free(headers);
-    free(much);
     expect_code(200, "GET", "/%T/0/front", "");
 }
 
@@ -437,7 +432,7 @@ TEST(where_few_files_may_be_open_a_flood_costs_nothing_and_others_are_answered)
 /* With which the page simulates: the test page_engine holds what comes of it against the program. */
 TEST(the_scene_of_a_run_has_bounds_steps_and_the_options_of_one_simulation)
 {
-    json_t *one = ask_json("/%T/0/scene"), *several = ask_json("/%T/3/scene");
+    json_auto_t *one = ask_json("/%T/0/scene"), *several = ask_json("/%T/3/scene");
     json_t *values = json_object_get(several, "values");
     const double plates[] = {0.01, 0.02, 0.03};
     assert_int_equal(json_integer_value(json_object_get(one, "simulations")), 1);
@@ -448,13 +443,11 @@ TEST(the_scene_of_a_run_has_bounds_steps_and_the_options_of_one_simulation)
         assert_true(json_number_value(json_array_get(json_array_get(values, 20), i)) == plates[i]);
     assert_in_range(json_integer_value(json_object_get(several, "simulations")), 2, 100);
     assert_non_null(strstr(json_string_value(json_object_get(several, "options")), "sim.replicates=1"));
-    json_decref(one);
-    json_decref(several);
 }
 
 TEST(two_runs_are_measured_in_one_box)
 {
-    json_t *both = ask_json("/%T/0/against/1"), *again = ask_json("/%T/1/against/0");
+    json_auto_t *both = ask_json("/%T/0/against/1"), *again = ask_json("/%T/1/against/0");
     for (size_t r = 0; r < 2; r++) {
         const json_t *one = json_array_get(json_object_get(both, "runs"), r);
         const json_t *v = json_object_get(one, "volume");
@@ -475,8 +468,6 @@ TEST(two_runs_are_measured_in_one_box)
     assert_true(json_equal(json_object_get(three, "differences"), differs));
     json_decref(three);
     json_decref(others);
-    json_decref(both);
-    json_decref(again);
     expect_code(404, "GET", "/%T/0/against/1,", "");
     expect_code(404, "GET", "/%T/0,1/front", "");
     expect_code(404, "GET", "/%T/0/against/1,1,1,1", "");
@@ -497,9 +488,8 @@ TEST(the_page_is_the_report_with_live_parts)
     assert_null(strstr(policy, "'unsafe-eval"));
     assert_null(strstr(page, server.token));
     free(page);
-    char *list = output_of("status @/runs --json");
+    FREED char *list = output_of("status @/runs --json");
     assert_non_null(strstr(list, "\"finished\""));
-    free(list);
 }
 
 /* -- the run ------------------------------------------------------------------------------------------------------- */
@@ -537,9 +527,8 @@ TEST(a_run_has_the_same_bytes_with_ten_pages_looking_on)
     assert_int_equal(status, 0);
     assert_true(WIFEXITED(end_server()));
     for (int i = 0; i < 10; i++) {
-        char *heard = hear(fd[i]);
+        FREED char *heard = hear(fd[i]);
         assert_non_null(strstr(heard, "\"state\":\"running\""));
-        free(heard);
     }
     assert_same_run("runs/a", "watched");
     free(words[2]);
@@ -559,39 +548,33 @@ static char *sums(void)
 
 TEST(nothing_of_a_run_is_written)
 {
-    char *before = sums();
-    Table front = table_of("runs/a/front.csv");
+    FREED char *before = sums();
+    OWNED(table_free) Table front = table_of("runs/a/front.csv");
     char path[64];
     snprintf(path, sizeof path, "/%%T/0/design/%.0f", front.values[0]);
-    json_t *design = ask_json(path);
+    json_auto_t *design = ask_json(path);
     assert_same_number(json_integer_value(json_object_get(design, "id")), (json_int_t)front.values[0]);
-    json_decref(design);
     json_decref(ask_json("/%T/runs"));
-    char *after = sums();
+    FREED char *after = sums();
     assert_string_equal(before, after);
-    free(before);
-    free(after);
-    table_free(&front);
 }
 
 static void refuse_note(int wanted, const char *note)
 {
-    char *answer = post("/%T/1/notes", note);
+    FREED char *answer = post("/%T/1/notes", note);
     assert_int_equal(code_of(answer), wanted);
-    free(answer);
 }
 
 TEST(notes_are_of_designs_of_the_run_and_lie_beside_it)
 {
-    Table front = table_of("runs/b/front.csv");
+    OWNED(table_free) Table front = table_of("runs/b/front.csv");
     const int id = (int)front.values[0];
     char key[24], path[PATH_MAX];
     snprintf(key, sizeof key, "%d", id);
     json_t *notes = post_json("/%T/1/notes", json_pack("{s:i, s:s}", "id", id, "text", "<b>good</b>"));
-    json_t *again = ask_json("/%T/1/notes");
+    json_auto_t *again = ask_json("/%T/1/notes");
     assert_string_equal(json_string_value(json_object_get(notes, key)), "<b>good</b>");
     assert_true(json_equal(notes, again));
-    json_decref(again);
     json_decref(notes);
     char *page = ask("GET", "/%T/1/", "", "");
     assert_non_null(strstr(page, "good"));
@@ -611,11 +594,9 @@ TEST(notes_are_of_designs_of_the_run_and_lie_beside_it)
     assert_int_equal(code_of(page), 200);
     assert_non_null(strstr(page, "notes.json:1: is no object of notes"));
     free(page);
-    char *kept = read_in_place("runs/b/notes.json");
+    FREED char *kept = read_in_place("runs/b/notes.json");
     assert_string_equal(kept, "[1]");
-    free(kept);
     assert_int_equal(unlink(path_of("runs/b/notes.json", path)), 0);
-    table_free(&front);
 }
 
 static void copy(const char *from, const char *to)
@@ -630,7 +611,7 @@ static void copy(const char *from, const char *to)
 TEST(a_kept_design_is_of_the_run_and_never_of_its_search)
 {
     char *rows[2], command[512];
-    Table front = table_of("runs/a/front.csv");
+    OWNED(table_free) Table front = table_of("runs/a/front.csv");
     json_t *x = json_array();
     for (size_t j = 0; j < 22; j++)
         json_array_append_new(x, json_real(front.values[1 + j] * (j ? 1 : 0.999)));
@@ -652,7 +633,6 @@ TEST(a_kept_design_is_of_the_run_and_never_of_its_search)
     assert_string_equal(rows[0], rows[1]);
     free(rows[0]);
     free(rows[1]);
-    table_free(&front);
 }
 
 /* Every listing names it with its reason, and none waits for it. */
@@ -670,11 +650,10 @@ TEST(a_run_that_cannot_be_read_holds_up_no_listing)
         least = fmin(least, now_s() - start);
     }
     assert_less(least, 1);
-    json_t *runs = ask_json("/%T/runs");
+    json_auto_t *runs = ask_json("/%T/runs");
     assert_int_equal(json_array_size(runs), 2);
     assert_string_equal(json_string_value(json_object_get(json_array_get(runs, 1), "state")), "unreadable");
     assert_less(20, strlen(json_string_value(json_object_get(json_array_get(runs, 1), "reason"))));
-    json_decref(runs);
     end_here(before);
 }
 
@@ -720,7 +699,7 @@ TEST(a_run_made_anew_in_the_place_of_another_is_served_as_it_is_now)
     assert_int_equal(json_integer_value(json_object_get(bounds, "simulations")), 1);
     json_decref(bounds);
     copy("runs/d", "odd/a");
-    Table front = table_of("runs/d/front.csv");
+    OWNED(table_free) Table front = table_of("runs/d/front.csv");
     json_t *now;
     size_t n = 0;
     for (int i = 0; i < 600 && n != front.n_rows; i++) { /* until it is read again */
@@ -733,7 +712,6 @@ TEST(a_run_made_anew_in_the_place_of_another_is_served_as_it_is_now)
     bounds = ask_json("/%T/0/scene");
     assert_in_range(json_integer_value(json_object_get(bounds, "simulations")), 2, 100);
     json_decref(bounds);
-    table_free(&front);
     end_here(before);
 }
 

@@ -180,15 +180,12 @@ TEST(saved_settings_load_to_the_same_values)
     Settings s, back;
     change_everything(&s);
     for (int described = 0; described < 2; described++) {
-        char *text = written(&s, described);
+        FREED char *text = written(&s, described);
         CHECK_OK(read_text(&back, text, &err), &err);
-        char *plain = written(&s, 0), *returned = written(&back, 0);
+        FREED char *plain = written(&s, 0), *returned = written(&back, 0);
         assert_string_equal(plain, returned);
         assert_memory_equal(&s, &back, offsetof(Settings, given));
         assert_true(back.building.damping.at[0] == s.building.damping.at[0] && back.search.seed == 4294967295);
-        free(text);
-        free(plain);
-        free(returned);
     }
 }
 
@@ -202,10 +199,9 @@ TEST(a_long_path_survives_saving)
     path[sizeof path - 1] = 0;
     settings_defaults(&s);
     set(&s, "motion.record", path);
-    char *text = written(&s, 1);
+    FREED char *text = written(&s, 1);
     CHECK_OK(read_text(&back, text, &err), &err);
     assert_string_equal(back.motion.record, path);
-    free(text);
 }
 
 TEST(what_is_not_written_keeps_its_default)
@@ -580,9 +576,8 @@ TEST(a_key_of_an_earlier_version_is_passed_over_where_a_run_has_it_and_whole_num
     assert_int_equal(settings_set(&s, "search.asynchronous=on", &err), STATUS_BAD_DATA);
     assert_non_null(strstr(err.text, "is no setting any more: every search looks ahead"));
     CHECK_OK(settings_set(&s, "search.max_evals=1000000", &err), &err);
-    char *text = settings_text(&s);
+    FREED char *text = settings_text(&s);
     assert_non_null(strstr(text, "\nmax_evals = 1000000\n"));
-    free(text);
 }
 
 SUITE(NULL, NULL)

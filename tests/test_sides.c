@@ -17,7 +17,7 @@ static SimResult push(Engine engine, double omega, double right, double left, do
 {
     double pulse[] = {0, -v, 0};
     const Motion motion = {.accel = pulse, .n = 3, .dt_s = 1};
-    SimModel model;
+    OWNED(model_free) SimModel model;
     SimResult r;
     bobs_model(&model, 1, &(Bob){.mass = MASS, .omega = omega}, 0,
                &(Contact){.k = 4.8650e10, .a = 0, .v0_floor = 1e-6});
@@ -25,7 +25,6 @@ static SimResult push(Engine engine, double omega, double right, double left, do
     const EngineOptions o = {.duration = duration, .accuracy = ACCURACY_FINE, .onsets = log};
     CHECK_OK(engine_entry(engine)->run(&model, &motion, &o, &r, &err), &err);
     assert_int_equal(r.outcome, RUN_OK);
-    model_free(&model);
     return r;
 }
 
@@ -73,7 +72,7 @@ TEST(an_oscillator_at_a_stop_has_twice_its_frequency)
 static SimResult tower(GapSides sides, Engine engine, double sign, const double x[])
 {
     SceneOptions o = scene_defaults();
-    Motion motion;
+    OWNED(motion_free) Motion motion;
     Scene *scene;
     SimWorker *worker;
     SimResult r;
@@ -90,7 +89,6 @@ static SimResult tower(GapSides sides, Engine engine, double sign, const double 
     CHECK_OK(sim_run(worker, SCENE_IMPACT, x, &r, &err), &err);
     sim_worker_free(worker);
     scene_free(scene);
-    motion_free(&motion);
     assert_int_equal(r.outcome, RUN_OK);
     r.seconds = 0;
     return r;
@@ -221,9 +219,8 @@ TEST(every_command_follows_gaps_by_side)
     };
     free(output_of("optimize configs/quick.ini --out @/run --threads 2 --max-evals 24 --set search.initial=12 "
                    "--set search.population=12 --set search.polish=0 " EACH SHORT));
-    char *front = read_in_place("run/front.csv");
+    FREED char *front = read_in_place("run/front.csv");
     assert_int_equal(strncmp(front, HEADER, sizeof HEADER - 1), 0);
-    free(front);
     for (size_t i = 0; i < sizeof COMMANDS / sizeof COMMANDS[0]; i++) {
         free(output_of("%s", COMMANDS[i]));
     }

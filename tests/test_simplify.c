@@ -52,7 +52,7 @@ static double off_step(double x, double step)
 TEST(the_path_loses_stops_only_and_ends_on_steps_within_what_may_be_lost)
 {
     const ImproveConfig c = config_of(0.05);
-    Improved s = simplified(&c);
+    OWNED(improved_free) Improved s = simplified(&c);
     const Evaluation *e = s.designs.row;
     assert_int_equal(s.designs.n, SIMPLIFY_PATH);
     for (size_t i = 1; i < s.designs.n; i++)
@@ -63,19 +63,17 @@ TEST(the_path_loses_stops_only_and_ends_on_steps_within_what_may_be_lost)
     }
     assert_at_most(e[s.designs.n - 1].f[0], 1.05 * e[0].f[0] * (1 + 1e-12));
     assert_true(s.loss[s.designs.n - 1] <= 1.0);
-    improved_free(&s);
 }
 
 /* The run itself has simulated the design: the start is what it stored. */
 TEST(the_start_is_the_design_of_the_run_and_idle_stops_change_no_bit)
 {
     const ImproveConfig c = config_of(0.05);
-    Improved s = simplified(&c);
+    OWNED(improved_free) Improved s = simplified(&c);
     const Evaluation *e = s.designs.row;
     assert_memory_equal(e[SIMPLIFY_START].x, run_x(&study, row), study.schema.n_var * sizeof *e->x);
     assert_memory_equal(e[SIMPLIFY_START].f, e[SIMPLIFY_CLOSING].f, study.schema.n_obj * sizeof *e->f);
     assert_less(s.n_left[SIMPLIFY_CLOSING], s.n_left[SIMPLIFY_START]);
-    improved_free(&s);
 }
 
 TEST(where_everything_may_be_lost_no_stop_is_left_and_where_nothing_may_none_goes_that_closes)
@@ -102,11 +100,10 @@ TEST(limits_are_kept_or_nothing_is_stored)
         c.slack[k] = INFINITY;
     snprintf(limited.search.limits, sizeof limited.search.limits, "mcore_kg<=1e6");
     study.settings = &limited;
-    Improved s = simplified(&c);
+    OWNED(improved_free) Improved s = simplified(&c);
     study.settings = before;
     assert_int_equal(s.designs.n, SIMPLIFY_MOVED + 1);
     assert_true(s.loss[SIMPLIFY_MOVED] > 1.0 && s.loss[SIMPLIFY_START] <= 0.0);
-    improved_free(&s);
 }
 
 TEST(the_command_stores_its_end_and_refuses_what_is_no_length)
@@ -125,7 +122,7 @@ TEST(ten_of_twenty_stops_go_from_the_knee_all_numbers_are_as_sold_and_j1_is_kept
 {
     static const double SOLD[] = {0.008, 0.010, 0.012, 0.015, 0.020, 0.025, 0.030, 0.040, 0.050};
     free(output_of("simplify @/run --design knee --gap-step 5mm --plates 8,10,12,15,20,25,30,40,50 --keep j1_m=2%%"));
-    Run now = run_in("run");
+    OWNED(run_free) Run now = run_in("run");
     size_t pair[2], n_stops = 0, n_sold = 0;
     assert_false(run_simplified(&now, row + 1, pair));
     assert_true(run_simplified(&now, now.table.n - 1, pair) && pair[0] == row && pair[1] == now.table.n - 1);
@@ -146,7 +143,6 @@ TEST(ten_of_twenty_stops_go_from_the_knee_all_numbers_are_as_sold_and_j1_is_kept
     snprintf(shown, sizeof shown, "\"pair\":[{\"id\":%ld,", now.table.row[row].id);
     assert_non_null(strstr(page, shown));
     free(page);
-    run_free(&now);
 }
 
 TEST(floors_of_a_zone_become_alike_and_stay_so_on_steps)
@@ -154,7 +150,7 @@ TEST(floors_of_a_zone_become_alike_and_stay_so_on_steps)
     ImproveConfig c = config_of(1e9);
     c.zones = 3;
     c.slack[0] = 0.3;
-    Improved s = simplified(&c);
+    OWNED(improved_free) Improved s = simplified(&c);
     for (size_t i = SIMPLIFY_ZONES; i < s.designs.n; i++)
         for (int a = 0; a < 20; a++)
             for (int b = 0; b < a; b++) {
@@ -162,7 +158,6 @@ TEST(floors_of_a_zone_become_alike_and_stay_so_on_steps)
                 assert_true(3 * a / 20 != 3 * b / 20 || x[a] == x[b]);
             }
     assert_less(s.n_left[s.designs.n - 1], s.n_left[0]);
-    improved_free(&s);
 }
 
 /* A mass of that size at the roof changes little, links do: where a tenth may be lost the mass goes and links stay. */
@@ -177,7 +172,7 @@ TEST(links_and_the_tuned_mass_go_by_their_words_as_far_as_they_earn_little)
                             "device_zone_1,device_zone_2,device_zone_3,device_zone_4,device_roof\n"
                             "9,0.02,0.02,7e5,10,0.3,0.1,gap,link,link,link,tuned_mass\n");
     free(output_of("optimize @/d.ini --out @/d --set search.start=@/d.csv"));
-    char *said = output_of("simplify @/d --design 1 --keep j1_m=10%%");
+    FREED char *said = output_of("simplify @/d --design 1 --keep j1_m=10%%");
     assert_non_null(strstr(said, "as it is: 21, "));
     assert_non_null(strstr(said, "idle ones gone: 16, "));
     const char *fewer = strstr(said, "fewer devices: ");
@@ -185,7 +180,6 @@ TEST(links_and_the_tuned_mass_go_by_their_words_as_far_as_they_earn_little)
     assert_true(left == 5 || left == 10 || left == 15);
     assert_non_null(strstr(said, "device_zone_1       none\n"));
     assert_non_null(strstr(said, "device_roof         none\n"));
-    free(said);
 }
 
 /* Whoever asks for the same once more gets the same answer, and the run keeps one design of it. */
@@ -193,28 +187,25 @@ TEST(a_second_time_it_is_the_design_of_the_first)
 {
     static const char *const AGAIN[] = {"simplify @/run --gap-step 10mm --plates 8,12,20,30 --keep j1_m=5%",
                                         "simplify @/run --design 41 --gap-step 10mm --plates 8,12,20,30 --keep j1_m=0"};
-    char *before = all_of("run");
+    FREED char *before = all_of("run");
     for (size_t i = 0; i < N_OF(AGAIN); i++) {
-        char *said = output_of("%s", AGAIN[i]);
+        FREED char *said = output_of("%s", AGAIN[i]);
         assert_non_null(strstr(said, "it is design 41 of the run: nothing new to store"));
-        free(said);
     }
-    char *after = all_of("run");
+    FREED char *after = all_of("run");
     assert_string_equal(before, after);
-    free(before);
-    free(after);
 }
 
 /* The best one on steps is there, marked; the --keep that is named leads to a design that keeps it. */
 TEST(what_loses_too_much_is_stored_and_named_with_the_keep_that_would_do)
 {
-    Said said;
+    OWNED(forget) Said said;
     char *folder = in_place("run"), words[300];
     free(output_of("optimize %s --new --out @/again", folder));
     free(folder);
     run(&said, "simplify @/again --plates 8 --keep j1_m=0.1%%");
     assert_int_equal(said.code, 69);
-    Run now = run_in("again");
+    OWNED(run_free) Run now = run_in("again");
     const Evaluation *last = &now.table.row[now.table.n - 1];
     assert_int_equal(last->kind, KIND_POLISHED);
     assert_non_null(strstr(last->reason, " beyond --keep"));
@@ -225,8 +216,6 @@ TEST(what_loses_too_much_is_stored_and_named_with_the_keep_that_would_do)
     assert_true(keep >= loses && keep < loses + 1.1e-3);
     snprintf(words, sizeof words, "the best design on these steps is design %ld, but j1_m loses ", last->id);
     assert_non_null(strstr(said.err, words));
-    run_free(&now);
-    forget(&said);
     free(output_of("simplify @/again --plates 8 --keep j1_m=%g", keep));
 }
 

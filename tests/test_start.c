@@ -12,13 +12,12 @@ TEST(given_designs_come_first_inside_the_box_and_once)
     write_in_place("begin.ini", BEGIN);
     write_in_place("given.csv", GIVEN);
     free(output_of("optimize @/begin.ini --out @/off --set search.start=%s/given.csv", place.folder));
-    Run h = run_in("off");
+    OWNED(run_free) Run h = run_in("off");
     assert_int_equal(h.table.n, 30);
     assert_memory_equal(h.table.x, WANTED, sizeof WANTED);
     for (size_t i = 0; i < h.table.n; i++)
         for (size_t j = 0; j < i; j++)
             assert_memory_not_equal(h.table.x + i * 4, h.table.x + j * 4, 4 * sizeof *h.table.x);
-    run_free(&h);
     write_in_place("short.csv", "x1,x2,x4\n0,0,0\n");
     char arguments[256];
     snprintf(arguments, sizeof arguments, "optimize @/begin.ini --out @/no --set search.start=%s/short.csv",
@@ -41,12 +40,11 @@ TEST(several_starts_are_taken_one_behind_the_other)
     free(output_of("optimize @/begin.ini --out @/after --set search.start=%s/more.csv,%s/earlier", place.folder,
                    place.folder));
     h = run_in("after");
-    Run earlier = run_in("earlier");
+    OWNED(run_free) Run earlier = run_in("earlier");
     assert_less(0, earlier.n_front);
     for (size_t i = 0; i < earlier.n_front && i < 10; i++)
         assert_memory_equal(run_x(&h, 2 + i), run_x(&earlier, earlier.front[i]), 4 * sizeof(double));
     run_free(&h);
-    run_free(&earlier);
 }
 
 static const char TOWER[] = SIX_FLOORS_INI "record = builtin:elcentro-like\nrecords = builtin:sylmar-like\n"
@@ -58,14 +56,12 @@ TEST(a_tower_under_records_with_replicates_has_the_same_rows_at_any_number_of_th
     write_in_place("tower.ini", TOWER);
     free(output_of("optimize @/tower.ini --out @/one --threads 1"));
     free(output_of("optimize @/tower.ini --out @/three --threads 3"));
-    Run one = run_in("one"), three = run_in("three");
+    OWNED(run_free) Run one = run_in("one"), three = run_in("three");
     const size_t n = 45, n_var = one.schema.n_var, m = one.schema.n_obj;
     assert_true(one.table.n == n && three.table.n == n);
     assert_memory_equal(one.table.x, three.table.x, n * n_var * sizeof(double));
     assert_memory_equal(one.F, three.F, n * m * sizeof(double));
     assert_memory_equal(one.table.sd, three.table.sd, n * m * sizeof(double));
-    run_free(&one);
-    run_free(&three);
 }
 
 SUITE(prepare, clear_place)

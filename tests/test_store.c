@@ -126,20 +126,18 @@ TEST(more_simulations_go_on_the_same_whenever_they_are_granted)
     grant_and_die(&late, 62);
     CHECK_OK(study_run(&late, &(StudyOptions){0}, &summary, NULL, &err), &err);
     assert_int_equal(summary.n_simulated, 62);
-    char *a = all_of("late"), *b = all_of("early");
+    FREED char *a = all_of("late"), *b = all_of("early");
     const char *end = a;
     for (int i = 0; i <= 40; i++)
         end = strchr(end, '\n') + 1;
     assert_memory_equal(a, b, (size_t)(end - a)); /* the first 40; from there on more was known when more was granted */
-    free(a);
-    free(b);
 }
 
 /* -- what is refused ----------------------------------------------------------------------------------------------- */
 
 static void refused_with(const Settings *s, const char *said, const char *line)
 {
-    char *lines = NULL;
+    FREED char *lines = NULL;
     size_t length;
     err = (Err){0};
     StudySummary summary;
@@ -148,7 +146,6 @@ static void refused_with(const Settings *s, const char *said, const char *line)
     fclose(f);
     if (!strstr(err.text, said) || !strstr(lines, line))
         fail_msg("said: %s\nlines: %swanted: %s\n%s", err.text, lines, said, line);
-    free(lines);
 }
 
 TEST(a_search_that_another_version_interrupted_is_refused_before_anything_is_changed)
@@ -159,10 +156,9 @@ TEST(a_search_that_another_version_interrupted_is_refused_before_anything_is_cha
     const Settings s = settings_of(TOWER, "version");
     assert_int_equal(study_run(&s, &(StudyOptions){.stop = stop_after, .user = &left}, &summary, NULL, &err),
                      STATUS_STOPPED);
-    Run stopped = run_in("version");
+    OWNED(run_free) Run stopped = run_in("version");
     snprintf(command, sizeof command, "UPDATE state SET bytes = x'0100000000000000', digest = %ld",
              state_digest(stopped.generation[stopped.n_generations - 1].number, "\1\0\0\0\0\0\0", 8));
-    run_free(&stopped);
     change_database("version/run.sqlite", command);
     shell_in_place("cp -r version as-it-was");
     refused_with(&s, "another version of the program interrupted this search", "");
@@ -229,12 +225,11 @@ static void check_unfinished_is_exported(const char *out)
     json_t *o = json_of("status @/%s --json", out);
     const double simulated = number(o, "simulated");
     json_decref(o);
-    char *all = output_of("export @/%s --all --csv -", out);
+    FREED char *all = output_of("export @/%s --all --csv -", out);
     for (const char *line = strchr(all, '\n'); line && line[1]; line = strchr(line + 1, '\n'))
         n++;
     for (const char *word = all; (word = strstr(word, ",unfinished,ok,,")) != NULL; word++)
         n_unfinished++;
-    free(all);
     assert_true((double)n == simulated && n_unfinished > 0);
     o = json_of("export @/%s --json", out);
     assert_same_number((double)json_array_size(json_object_get(o, "evaluations")), simulated);
@@ -244,12 +239,10 @@ static void check_unfinished_is_exported(const char *out)
 /* Nothing is known of the front yet; the pace comes from what was simulated. */
 static void check_status_has_no_nan(const char *out)
 {
-    char *said = output_of("status @/%s", out), *list = output_of("status @");
+    FREED char *said = output_of("status @/%s", out), *list = output_of("status @");
     assert_null(strstr(said, "nan"));
     assert_null(strstr(said, "- simulations/s"));
     assert_null(strstr(list, "nan"));
-    free(list);
-    free(said);
 }
 
 static void check_signal(int number, const char *out)
@@ -286,27 +279,25 @@ TEST(a_signal_stops_within_a_batch_and_the_command_that_is_printed_goes_on)
 /* `script` gives the program a terminal. */
 TEST(progress_is_one_line_on_a_terminal_and_none_in_a_pipe)
 {
-    Said s;
+    OWNED(forget) Said s;
     char command[512];
     write_in_place("textbook.ini", TEXTBOOK);
     run(&s, "optimize @/textbook.ini --out @/in-a-pipe");
     assert_int_equal(s.code, 0);
     assert_string_equal(s.err, "");
-    forget(&s);
     if (system("command -v script >/dev/null") != 0)
         skip();
     snprintf(command, sizeof command,
              "script -qec '\"%s\" optimize %s/textbook.ini --out %s/on-a-terminal' %s/typed >%s/seen", getenv("IMTET"),
              place.folder, place.folder, place.folder, place.folder);
     assert_int_equal(system(command), 0);
-    char *seen = read_in_place("seen");
+    FREED char *seen = read_in_place("seen");
     for (const char *line = seen; (line = strchr(line, '\r')) != NULL;) {
         const size_t shown = strcspn(++line, "\r\n\033");
         assert_at_most(shown, 79); /* `script` in a pipe tells no width */
     }
     assert_non_null(strstr(seen, " of 40"));
     assert_non_null(strstr(seen, "\033[K"));
-    free(seen);
 }
 
 TEST(a_second_signal_ends_at_once)
@@ -360,7 +351,7 @@ TEST(hours_are_obeyed_within_a_batch)
 /* The designs of two searches are the same; the first has n_polished more, with ids of their own. */
 static void assert_searched_as(const char *a, const char *b, size_t n_polished)
 {
-    Run first = run_in(a), second = run_in(b);
+    OWNED(run_free) Run first = run_in(a), second = run_in(b);
     const size_t n = run_first_polished(&first), polished = first.table.n - n;
     assert_int_equal(polished, n_polished);
     assert_int_equal(n, first.n_finished);
@@ -373,8 +364,6 @@ static void assert_searched_as(const char *a, const char *b, size_t n_polished)
             id += first.table.row[p].id <= id;
         assert_int_equal(first.table.row[i].id, id);
     }
-    run_free(&first);
-    run_free(&second);
 }
 
 /* One that beats everything, one that is beaten, one that failed; then the run goes on as if they were not there. */
@@ -399,7 +388,7 @@ TEST(polished_designs_join_the_front_but_not_the_search)
     run_free(&saved);
     CHECK_OK(add_to_run(path_of("polished", path), 3, designs, &first, &err), &err);
     assert_int_equal(first, last + 1);
-    char *front = output_of("export @/polished --csv -");
+    FREED char *front = output_of("export @/polished --csv -");
     snprintf(id, sizeof id, "\n%ld,", first);
     assert_non_null(strstr(front, id));
     assert_ptr_equal(strchr(strstr(front, id) + 1, '\n')[1], 0); /* it is the only one left */
@@ -413,13 +402,10 @@ TEST(polished_designs_join_the_front_but_not_the_search)
 
     CHECK_OK(study_run(&s, &(StudyOptions){0}, &summary, NULL, &err), &err);
     assert_searched_as("polished", "textbook-whole", 3);
-    char *end = output_of("export @/polished --csv -"), *all = read_in_place("polished/front.csv");
+    FREED char *end = output_of("export @/polished --csv -"), *all = read_in_place("polished/front.csv");
     assert_int_equal(strtol(strchr(end, '\n'), NULL, 10), first);
     assert_ptr_equal(strchr(strstr(end, id) + 1, '\n')[1], 0);
     assert_string_equal(all, front);
-    free(end);
-    free(all);
-    free(front);
     s.search.max_evals = 60; /* a finished run with polished designs goes on */
     CHECK_OK(study_run(&s, &(StudyOptions){0}, &summary, NULL, &err), &err);
     assert_int_equal(summary.n_simulated, 60);
@@ -433,7 +419,7 @@ TEST(one_failure_in_ten_is_survived_and_never_on_the_front)
                                 "threads = 2\n");
     free(output_of("optimize @/tenth.ini --out @/tenth"));
     char path[PATH_MAX];
-    Run saved = run_in("tenth");
+    OWNED(run_free) Run saved = run_in("tenth");
     assert_int_equal(saved.table.n, 100);
     assert_int_equal(saved.n_failed, 10);
     assert_less(0, saved.n_front);
@@ -441,7 +427,6 @@ TEST(one_failure_in_ten_is_survived_and_never_on_the_front)
         assert_int_equal(saved.place[i].ok, saved.table.row[i].id % 10 != 0);
         assert_true(saved.place[i].ok || (!saved.place[i].on_front && saved.place[i].entered == NEVER));
     }
-    run_free(&saved);
     json_t *o = json_of("status @/tenth --json");
     assert_int_equal(number(json_object_get(json_object_get(o, "failures"), "error"), "count"), 10);
     assert_string_equal(json_string_value(json_object_get(o, "state")), "finished");
@@ -466,7 +451,7 @@ TEST(one_failure_in_ten_is_survived_and_never_on_the_front)
  */
 TEST(the_front_of_every_generation_can_be_told)
 {
-    Run s = run_in("tower-whole");
+    OWNED(run_free) Run s = run_in("tower-whole");
     const size_t m = s.schema.n_obj;
     for (size_t g = 0; g < s.n_generations; g++) {
         long on_front = 0;
@@ -489,7 +474,6 @@ TEST(the_front_of_every_generation_can_be_told)
         }
         assert_int_equal(on_front, s.generation[g].front);
     }
-    run_free(&s);
 }
 
 /* Against the exact volume of some boxes. */
@@ -518,12 +502,11 @@ TEST(an_export_of_thousands_has_every_design_in_its_order)
     write_in_place("large.ini", DTLZ2_INI(3, 2) "[search]\nsurrogate = off\n"
                                                 "stop_after = 0\nmax_evals = 4200\n");
     free(output_of("optimize @/large.ini --out @/large"));
-    char *all = all_of("large");
+    FREED char *all = all_of("large");
     long n = 0;
     for (const char *line = strchr(all, '\n'); line && line[1]; line = strchr(line + 1, '\n'))
         assert_int_equal(strtol(line + 1, NULL, 10), ++n);
     assert_int_equal(n, DESIGNS);
-    free(all);
 }
 
 /* Kernels as the program has them, whose runs are compared with those of this process. */

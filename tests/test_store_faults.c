@@ -178,10 +178,9 @@ static void fail_once(Kind kind, long at, const char *front)
     Err again = {0};
     if (status != STATUS_OK && study(&s, &again) != STATUS_OK)
         fail_msg("%s %ld: '%s', and then '%s'", KINDS[kind], at, err.text, again.text);
-    char *now = read_in_place("faulty/front.csv");
+    FREED char *now = read_in_place("faulty/front.csv");
     if (strcmp(now, front) != 0)
         fail_msg("%s %ld: another front", KINDS[kind], at);
-    free(now);
 }
 
 TEST(a_study_whose_kth_call_fails_goes_on_to_the_same_front)
@@ -194,11 +193,10 @@ TEST(a_study_whose_kth_call_fails_goes_on_to_the_same_front)
     CHECK_OK(study(&s, &err), &err);
     fault.armed = 0;
     memcpy(n, fault.n, sizeof n);
-    char *front = read_in_place("whole/front.csv");
+    FREED char *front = read_in_place("whole/front.csv");
     for (Kind kind = 0; kind < N_KINDS; kind++)
         for (long at = 1; at <= n[kind]; at += n[kind] <= most ? 1 : (n[kind] + most - 1) / most)
             fail_once(kind, at, front);
-    free(front);
 }
 
 /* -- the store alone ----------------------------------------------------------------------------------------------- */
@@ -269,14 +267,13 @@ static const Evaluation POLISHED[N_POLISHED] = {{.x = (double *)X[0], .f = (doub
 static Status work(RunStore *store, const Settings *s, const Schema *schema, size_t n_generations, Err *why)
 {
     const Run *h = store_run(store);
-    Run now;
+    OWNED(run_free) Run now = {0};
     TRY(h ? store_resume(store, schema, s, 1, why) : store_begin(store, schema, s, "{}", why));
     TRY(store_session(store, "a test", 1, 0, why));
     for (size_t g = h ? h->n_generations : 0; g < n_generations; g++)
         TRY(generation(store, g, why));
     TRY(store_read(store, RUN_WHOLE, &now, why));
     const long tried = now.tried_to_polish;
-    run_free(&now);
     if (n_generations == N_GENERATIONS && tried < 1)
         TRY(store_polished(store, &POLISHED[0], 1, N_DESIGNS, &(long){0}, why));
     return n_generations == N_GENERATIONS ? store_polished(store, NULL, 2, N_DESIGNS, NULL, why) : STATUS_OK;
@@ -298,12 +295,11 @@ static Status session(const char *folder, const Schema *schema, size_t n_generat
 /* From wherever the run stands to its end, designs from outside included. */
 static Status life(const char *folder, const Schema *schema, Err *why)
 {
-    Run h;
+    OWNED(run_free) Run h = {0};
     TRY(session(folder, schema, N_GENERATIONS - 1, why));
     TRY(session(folder, schema, N_GENERATIONS, why));
     TRY(run_read(&h, folder, why));
     const size_t n = h.table.n;
-    run_free(&h);
     for (size_t k = n - N_DESIGNS; k < N_POLISHED; k++)
         TRY(add_to_run(folder, 1, POLISHED + k, NULL, why));
     return session(folder, schema, N_GENERATIONS, why);
@@ -332,10 +328,9 @@ static void check_life(Kind kind, long at, int rolls_back, const char *folder, c
         fail_msg("%s %ld: fails and says nothing", KINDS[kind], at);
     if (life(folder, schema, &again) != STATUS_OK)
         fail_msg("%s %ld: '%s', and then '%s'", KINDS[kind], at, err.text, again.text);
-    char *now = tables();
+    FREED char *now = tables();
     if (strcmp(now, wanted) != 0)
         fail_msg("%s %ld: '%s', and then other tables:\n%s\nwanted\n%s", KINDS[kind], at, err.text, now, wanted);
-    free(now);
 }
 
 TEST(whichever_call_of_a_run_fails_it_goes_on_to_the_same_tables)
@@ -350,7 +345,7 @@ TEST(whichever_call_of_a_run_fails_it_goes_on_to_the_same_tables)
     CHECK_OK(life(folder, &schema, &err), &err);
     fault.armed = 0;
     memcpy(n, fault.n, sizeof n);
-    char *wanted = tables();
+    FREED char *wanted = tables();
     assert_non_null(strstr(wanted, "\n6,"));
     const long every = getenv("FAULTS") ? 1 : 64;
     long n_struck = 0;
@@ -364,7 +359,6 @@ TEST(whichever_call_of_a_run_fails_it_goes_on_to_the_same_tables)
                 check_life(kind, at, 1, folder, &schema, wanted);
         }
     print_message("%ld calls refused, of %ld, %ld, %ld, ...\n", n_struck, n[STEP], n[EXEC], n[PREPARE]);
-    free(wanted);
     schema_free(&schema);
 }
 
@@ -387,12 +381,12 @@ TEST(every_fault_of_the_database_is_said_in_our_words)
                 {SQLITE_CANTOPEN, STATUS_OK, ""}};
     char folder[PATH_MAX], inside[PATH_MAX];
     RunStore *store;
-    Schema schema;
+    OWNED(schema_free) Schema schema;
     const Settings s = settings_of(PLAIN, "50% ?#");
     CHECK_OK(schema_of(&schema, &s, 0, &err), &err);
     CHECK_OK(session(path_of("50% ?#", folder), &schema, 1, &err), &err);
     for (size_t i = 0; i < sizeof SAID / sizeof SAID[0]; i++) {
-        Run h;
+        OWNED(run_free) Run h = {0};
         arm(PREPARE, 1, SAID[i].code);
         const Status status = run_read(&h, folder, &err);
         fault.armed = 0;
@@ -400,18 +394,15 @@ TEST(every_fault_of_the_database_is_said_in_our_words)
             fail_msg("%d: %d, %s", SAID[i].code, status, err.text);
         if (status == STATUS_OK)
             assert_int_equal(h.table.n, UNTIL[0]);
-        run_free(&h);
     }
     CHECK_OK(store_open(&store, folder, 0, &err), &err);
     CHECK_OK(work(store, &s, &schema, 2, &err), &err);
     arm(PREPARE, 1, SQLITE_CANTOPEN); /* the journal is in use: the file alone would be an old run */
-    Run h;
+    OWNED(run_free) Run h = {0};
     CHECK_OK(run_read(&h, folder, &err), &err);
     fault.armed = 0;
     assert_int_equal(h.table.n, UNTIL[1]);
-    run_free(&h);
     store_free(store);
-    schema_free(&schema);
     Database *d;
     assert_int_equal(database_create(&d, path_of("nowhere/run.sqlite", inside), &err), STATUS_IO);
     assert_non_null(strstr(err.text, "cannot be opened"));
@@ -492,7 +483,7 @@ TEST(a_generation_that_was_not_simulated_is_refused)
 {
     char folder[PATH_MAX];
     RunStore *store;
-    Schema schema;
+    OWNED(schema_free) Schema schema;
     long first;
     const Settings s = settings_of(PLAIN, "early");
     CHECK_OK(schema_of(&schema, &s, 0, &err), &err);
@@ -509,7 +500,6 @@ TEST(a_generation_that_was_not_simulated_is_refused)
     v.state = NULL;
     assert_int_equal(store_generation(store, &v, &(SessionTimes){0}, &err), STATUS_NO_MEMORY);
     store_free(store);
-    schema_free(&schema);
 }
 
 /* Where there is a disk of memory: thousands of commits. */

@@ -33,14 +33,12 @@ TEST(a_run_is_repeated_from_its_own_folder)
 {
     free(output_of("optimize @/threads-2/settings.ini --out @/again"));
     assert_same_files("threads-2/front.csv", "again/front.csv");
-    char *path = in_place("again/provenance.json");
-    json_t *o = json_load_file(path, 0, NULL);
+    FREED char *path = in_place("again/provenance.json");
+    json_auto_t *o = json_load_file(path, 0, NULL);
     assert_non_null(o);
     assert_same_number(json_integer_value(json_object_get(o, "seed")), 1);
     assert_non_null(json_object_get(json_object_get(o, "libraries"), "sundials"));
     assert_int_equal(json_string_length(json_object_get(json_object_get(o, "inputs"), "record_fnv1a")), 16);
-    json_decref(o);
-    free(path);
 }
 
 static int dominates(const double a[7], const double b[7])
@@ -57,7 +55,7 @@ static int dominates(const double a[7], const double b[7])
 
 TEST(the_front_holds_nondominated_designs_in_the_search_box)
 {
-    Table t = table_of("threads-1/front.csv");
+    OWNED(table_free) Table t = table_of("threads-1/front.csv");
     assert_int_equal(t.n_cols, 1 + 8 + 7 + 7); /* the last ones: likely errors */
     for (size_t i = 0; i < t.n_rows; i++) {
         const double *a = t.values + i * t.n_cols;
@@ -67,25 +65,22 @@ TEST(the_front_holds_nondominated_designs_in_the_search_box)
         for (size_t l = 0; l < t.n_rows; l++)
             assert_false(dominates(t.values + l * t.n_cols + 9, a + 9));
     }
-    table_free(&t);
 }
 
 TEST(a_run_that_is_finished_is_shown_again_and_a_new_one_gets_a_number)
 {
     Said s;
-    char *before = read_in_place("threads-1/front.csv");
+    FREED char *before = read_in_place("threads-1/front.csv");
     run(&s, SMALL_STUDY "--threads 2 --max-hours 1 --out @/threads-1"); /* of this session: no lower limit of the run */
     assert_int_equal(s.code, 0);
     assert_non_null(strstr(s.out, "finished before"));
     forget(&s);
-    char *after = read_in_place("threads-1/front.csv");
+    FREED char *after = read_in_place("threads-1/front.csv");
     assert_string_equal(before, after);
     run(&s, SMALL_STUDY "--new --set run.out=@/threads-1");
     assert_int_equal(s.code, 0);
     assert_non_null(strstr(s.out, "threads-1-2/front.csv"));
     forget(&s);
-    free(before);
-    free(after);
 }
 
 TEST(the_export_is_the_front)
@@ -101,8 +96,8 @@ static long first_id(const char *front)
 
 TEST(a_design_of_the_front_is_evaluated_on_other_motions)
 {
-    char *front = read_in_place("threads-1/front.csv");
-    json_t *o =
+    FREED char *front = read_in_place("threads-1/front.csv");
+    json_auto_t *o =
         json_of("evaluate @/threads-1 --design %ld --record builtin:kobe-like --record builtin:elcentro-like --json",
                 first_id(front));
     const json_t *records = json_object_get(o, "records");
@@ -117,8 +112,6 @@ TEST(a_design_of_the_front_is_evaluated_on_other_motions)
     const json_t *own = json_array_get(records, 0);
     assert_same_number(number(json_object_get(own, "with_core"), "j1_m"), strtod(row, NULL));
     assert_same_number(number(json_object_get(own, "no_core"), "impacts"), 0);
-    json_decref(o);
-    free(front);
     expect(65, "has no design 123456", "evaluate @/threads-1 --design 123456 --record builtin:kobe-like");
     expect_output("no core", "evaluate @/threads-1 --design knee --record builtin:sylmar-like");
 }
@@ -154,7 +147,7 @@ static size_t n_files(const char *folder)
 
 TEST(a_design_is_evaluated_on_every_motion_of_a_folder)
 {
-    json_t *o =
+    json_auto_t *o =
         json_of("evaluate @/threads-1 --design knee --record tests/motion --set motion.channel=1 --pga 0.3 --json");
     const json_t *records = json_object_get(o, "records"), *unreadable = json_object_get(o, "unreadable");
     assert_int_equal(json_array_size(records) + json_array_size(unreadable), n_files("tests/motion"));
@@ -170,18 +163,15 @@ TEST(a_design_is_evaluated_on_every_motion_of_a_folder)
         at++;
     const json_t *one = json_array_get(unreadable, at);
     assert_non_null(strstr(json_string_value(json_object_get(one, "reason")), "irregular.csv:26: time 0.24 s breaks"));
-    json_decref(o);
-    char *table = output_of("evaluate @/threads-1 --design knee --record tests/motion --set motion.channel=1");
+    FREED char *table = output_of("evaluate @/threads-1 --design knee --record tests/motion --set motion.channel=1");
     assert_non_null(strstr(table, "\none.knet "));
     assert_non_null(strstr(table, "  no core "));
     assert_non_null(strstr(table, "not read: tests/motion/irregular.csv:26"));
-    free(table);
     expect(65, "holds no ground motion that can be read", "evaluate @/threads-1 --design knee --record configs/sac20");
     expect(65, "not read: tests/motion/one.knet: motion.channel '99' is not exactly one of its channels",
            "evaluate @/threads-1 --design knee --record tests/motion --set motion.channel=99");
-    char *empty = in_place("empty");
+    FREED char *empty = in_place("empty");
     assert_int_equal(mkdir(empty, 0777), 0);
-    free(empty);
     Said s;
     run(&s, "evaluate @/threads-1 --design knee --record @/empty");
     assert_int_equal(s.code, 65);
@@ -210,7 +200,7 @@ static void assert_all_in(const char *some, const char *all)
 /* kill -9 once a front must be on the disk, 0.2 s after the first one; most of the 4000 simulations are still to come. */
 TEST(a_run_that_is_killed_leaves_its_last_finished_generation)
 {
-    Said s;
+    OWNED(forget) Said s;
     run(&s, "%s",
         SMALL_STUDY_OF(4000) "--threads 1 --out @/killed & n=0; "
                              "while ! grep -qs 'number.: 30,' @/killed/log.jsonl && [ $n -lt 1200 ]; do n=$((n+1)); "
@@ -218,13 +208,10 @@ TEST(a_run_that_is_killed_leaves_its_last_finished_generation)
                              "kill -9 $! && ! wait $!");
     if (s.code != 0)
         fail_msg("exit %d, said: %s", s.code, s.err);
-    forget(&s);
     free(output_of("export @/killed --csv @/rescued.csv"));
     free(output_of("export @/killed --all --csv @/rescued-all.csv"));
-    char *rescued = read_in_place("rescued.csv"), *all = read_in_place("rescued-all.csv");
+    FREED char *rescued = read_in_place("rescued.csv"), *all = read_in_place("rescued-all.csv");
     assert_all_in(rescued, all);
-    free(rescued);
-    free(all);
     free(output_of("evaluate @/killed --design knee --record builtin:elcentro-like --set sim.duration_s=4"));
 }
 
@@ -235,10 +222,10 @@ TEST(a_search_begins_with_given_designs)
     free(output_of("optimize @/sphere.ini --out @/earlier"));
     free(output_of("optimize @/sphere.ini --out @/later --set search.start=@/earlier"));
     free(output_of("export @/later --all --csv @/all.csv"));
-    char *front_path = in_place("earlier/front.csv"), *all_path = in_place("all.csv");
+    FREED char *front_path = in_place("earlier/front.csv"), *all_path = in_place("all.csv");
     char *all, *line;
     size_t length;
-    Table front;
+    OWNED(table_free) Table front;
     CHECK_OK(table_read(&front, front_path, 1, &err), &err);
     CHECK_OK(file_read(all_path, FILE_LARGEST, &all, &length, &err), &err);
     line = strchr(all, '\n') + 1;
@@ -253,9 +240,6 @@ TEST(a_search_begins_with_given_designs)
     expect_file("polished-too.csv", ",polished,ok,");
     expect(66, "search.start", "optimize @/sphere.ini --out @/no --set search.start=@/nothing");
     free(all);
-    table_free(&front);
-    free(front_path);
-    free(all_path);
 }
 
 TEST(a_worker_gives_the_same_run_at_any_number_of_threads)
@@ -264,10 +248,8 @@ TEST(a_worker_gives_the_same_run_at_any_number_of_threads)
         "optimize configs/quick.ini " DTLZ2(22, 7) "--set search.initial=50 --max-evals 90 --threads %d --out @/%d";
     free(output_of(STUDY, 1, 1));
     free(output_of(STUDY, 3, 3));
-    char *one = output_of("export @/1 --all --csv -"), *three = output_of("export @/3 --all --csv -");
+    FREED char *one = output_of("export @/1 --all --csv -"), *three = output_of("export @/3 --all --csv -");
     assert_string_equal(one, three);
-    free(one);
-    free(three);
 }
 
 SUITE(make_place, clear_place)

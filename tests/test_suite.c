@@ -62,7 +62,7 @@ TEST(the_ground_of_the_suite_ends_at_rest_where_it_began_and_no_two_motions_are_
     for (int i = 0; i < SUITE_MOTIONS; i++) {
         const Motion *m = &motion[i];
         MotionFigures f;
-        double *v = calloc(3 * m->n, sizeof *v);
+        FREED double *v = calloc(3 * m->n, sizeof *v);
         motion_figures(m, &f);
         motion_histories(m, v, v + m->n, v + 2 * m->n);
         assert_less(fabs(v[m->n - 1]), 1e-6 * f.pgv_m_s);
@@ -70,7 +70,6 @@ TEST(the_ground_of_the_suite_ends_at_rest_where_it_began_and_no_two_motions_are_
         hash[i] = m->file_hash;
         for (int j = 0; j < i; j++)
             assert_true(hash[j] != hash[i]);
-        free(v);
     }
 }
 
@@ -159,9 +158,8 @@ TEST(a_study_under_a_suite_is_simulated_under_all_of_it_and_notices_a_changed_li
                    "--set motion.pga_g=0 --set motion.records=@/study_list.txt --set sim.accuracy=coarse --set "
                    "search.max_evals=4 --set search.initial=4 --set search.population=4 "
                    "--set search.polish=0 --out @/run"));
-    json_t *o = json_of("evaluate @/run --design knee --json");
+    json_auto_t *o = json_of("evaluate @/run --design knee --json");
     assert_int_equal(json_array_size(json_object_get(o, "records")), 3);
-    json_decref(o);
     write_in_place("study_list.txt", "builtin:sylmar-like\nbuiltin:suite-03 factor=1.6\n");
     expect(65, "does not hold what it held for the run", "evaluate @/run --design knee --json");
 }

@@ -12,24 +12,22 @@ static Status parse(Table *t, const char *text, int has_header, Err *why)
 static void expect_refusal(const char *text, int has_header, const char *wanted)
 {
     err = (Err){0};
-    Table t;
+    OWNED(table_free) Table t;
     assert_int_equal(parse(&t, text, has_header, &err), STATUS_BAD_DATA);
     if (!strstr(err.text, wanted))
         print_error("'%s' does not hold '%s'\n", err.text, wanted);
     assert_non_null(strstr(err.text, wanted));
-    table_free(&t);
 }
 
 TEST(numbers_come_out_as_they_were_written_below_the_names_of_their_columns)
 {
-    Table t;
+    OWNED(table_free) Table t;
     CHECK_OK(parse(&t, " a , b_m_s2,c\n1,-2.5,3e-7\n0.1,1e300,-0\n", 1, &err), &err);
     const double want[] = {1, -2.5, 3e-7, 0.1, 1e300, -0.0};
     assert_int_equal(t.n_rows, 2);
     assert_int_equal(t.n_cols, 3);
     assert_memory_equal(t.values, want, sizeof want);
     assert_true(table_column(&t, "b_m_s2") == 1 && table_column(&t, "a") == 0 && table_column(&t, "b") == -1);
-    table_free(&t);
 }
 
 TEST(comments_blank_lines_and_foreign_line_ends_are_skipped_and_blanks_part_numbers)
@@ -37,13 +35,12 @@ TEST(comments_blank_lines_and_foreign_line_ends_are_skipped_and_blanks_part_numb
     static const char *const TEXTS[] = {"# who\r\n\r\n  # what\r\n 1 , 2 \r\n\r\n\t3\t,4\r\n# end",
                                         "#\n   1.0e+00  2\n3\t 4 \n", "1,0 2,0\n3,0 4,0"};
     for (size_t i = 0; i < N_OF(TEXTS); i++) {
-        Table t;
+        OWNED(table_free) Table t;
         CHECK_OK(parse(&t, TEXTS[i], 0, &err), &err);
         const double want[] = {1, 2, 3, 4};
         assert_int_equal(t.n_rows, 2);
         assert_null(t.names);
         assert_memory_equal(t.values, want, sizeof want);
-        table_free(&t);
     }
 }
 
@@ -65,10 +62,9 @@ TEST(each_fault_names_file_line_and_column)
     expect_refusal("1,1e999\n", 0, "there.csv:1: column 2 is inf");
     expect_refusal("", 0, "holds no numbers");
     expect_refusal("# nothing\n", 0, "holds no numbers");
-    Table t;
+    OWNED(table_free) Table t;
     CHECK_OK(table_parse(&t, "names", "a,b\n", 4, 1, &(Err){0}), &(Err){0}); /* names alone are an empty table */
     assert_true(t.n_rows == 0 && t.n_cols == 2);
-    table_free(&t);
 }
 
 /* A trailing comma must not fetch its number from the line below. */
@@ -102,12 +98,11 @@ TEST(the_forms_of_spreadsheets_hold_the_same_numbers)
     };
     const double want[] = {1.5, -2.25, 3e-7, 0.1, 4, 5};
     for (size_t i = 0; i < sizeof FORMS / sizeof FORMS[0]; i++) {
-        Table t;
+        OWNED(table_free) Table t;
         CHECK_OK(parse(&t, FORMS[i], 0, &err), &err);
         assert_int_equal(t.n_rows, 2);
         assert_int_equal(t.n_cols, 3);
         assert_memory_equal(t.values, want, sizeof want);
-        table_free(&t);
     }
 }
 
@@ -120,13 +115,12 @@ TEST(a_header_of_a_spreadsheet_loses_its_mark_and_its_quotes)
         "\"gap_01_m\",\"t_base_m\"\n\"0,05\",\"0,012\"\n",
     };
     for (size_t i = 0; i < sizeof FORMS / sizeof FORMS[0]; i++) {
-        Table t;
+        OWNED(table_free) Table t;
         CHECK_OK(parse(&t, FORMS[i], 1, &err), &err);
         assert_int_equal(table_column(&t, "gap_01_m"), 0);
         assert_int_equal(table_column(&t, "t_base_m"), 1);
         assert_true(t.n_rows == 1 && t.values[0] == 0.05 && t.values[1] == 0.012);
         assert_int_equal(t.line[0], 2);
-        table_free(&t);
     }
 }
 
@@ -185,7 +179,7 @@ static const DesignSpace *paper_space(int n_floors)
 
 TEST(a_design_file_gives_its_rows_and_their_lines)
 {
-    Designs d;
+    OWNED(design_free) Designs d;
     char path[] = "/tmp/imtet-design-XXXXXX";
     const int fd = mkstemp(path);
     assert_at_most(0, fd);
@@ -196,7 +190,6 @@ TEST(a_design_file_gives_its_rows_and_their_lines)
     assert_memory_equal(d.x, want, sizeof want);
     assert_int_equal(d.line[0], 4);
     assert_int_equal(d.line[1], 6);
-    design_free(&d);
     remove(path);
 }
 
@@ -212,9 +205,8 @@ TEST(variables_are_named_by_floor_from_the_bottom)
 
 static Status read_two_floors(const char *path, Err *why)
 {
-    Designs d;
+    OWNED(design_free) Designs d;
     const Status status = design_read(&d, path, paper_space(2), why);
-    design_free(&d);
     return status;
 }
 

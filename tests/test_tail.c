@@ -31,9 +31,9 @@ static SimResult run_with(const SceneOptions *o, const Motion *m, SceneKind kind
 TEST(what_is_left_of_a_motion_is_what_it_gives_to_the_building_at_rest)
 {
     const SceneOptions o = paper_scene();
-    Motion m = kobe_like();
+    OWNED(motion_free) Motion m = kobe_like();
     Building b;
-    double *input = malloc(m.n * sizeof *input);
+    FREED double *input = malloc(m.n * sizeof *input);
     CHECK_OK(building_load(&b, &o.building, &err), &err);
     CHECK_OK(tail_input(&b.model, &m, input, &err), &err);
     double most = 0;
@@ -49,14 +49,12 @@ TEST(what_is_left_of_a_motion_is_what_it_gives_to_the_building_at_rest)
     }
     assert_less(0, most);
     building_free(&b);
-    free(input);
-    motion_free(&m);
 }
 
 TEST(contacts_end_where_they_can_change_nothing)
 {
     SceneOptions o = paper_scene(), never = o;
-    Motion m = kobe_like();
+    OWNED(motion_free) Motion m = kobe_like();
     const double length = (double)(m.n - 1) * m.dt_s;
     never.sim.accuracy = o.sim.accuracy = ACCURACY_STANDARD;
     double x[FLOORS_MAX + 2], earliest = length;
@@ -77,7 +75,6 @@ TEST(contacts_end_where_they_can_change_nothing)
         earliest = fmin(earliest, r.settled_s);
     }
     assert_less(earliest, 0.9 * length);
-    motion_free(&m);
 }
 
 /* By the engine alone, contacts followed to the end or not. */
@@ -93,10 +90,10 @@ static SimResult run_engine(const SimModel *model, const Motion *m, const double
 TEST(a_run_without_its_end_has_the_peaks_and_nearly_the_shares_of_the_whole)
 {
     const SceneOptions o = paper_scene();
-    Motion m = kobe_like();
-    Building b;
+    OWNED(motion_free) Motion m = kobe_like();
+    OWNED(building_free) Building b;
     CoreBeam core;
-    SimModel model;
+    OWNED(model_free) SimModel model;
     double x[FLOORS_MAX], *input = malloc(m.n * sizeof *input);
     CHECK_OK(building_load(&b, &o.building, &err), &err);
     CHECK_OK(model_create(&model, b.n, b.model.n, &err), &err);
@@ -113,16 +110,13 @@ TEST(a_run_without_its_end_has_the_peaks_and_nearly_the_shares_of_the_whole)
         assert_close(ended.ed5_10_pct, whole.ed5_10_pct, 5e-3);
         assert_close(ended.edcs_pct, whole.edcs_pct, 5e-3);
     }
-    model_free(&model);
-    building_free(&b);
     free(input);
-    motion_free(&m);
 }
 
 TEST(a_motion_that_ends_between_two_samples_ends_without_contacts_as_well)
 {
     SceneOptions o = paper_scene();
-    Motion m = kobe_like();
+    OWNED(motion_free) Motion m = kobe_like();
     double x[FLOORS_MAX + 2];
     bench_irregular_gaps(0, 20, x);
     for (int j = 10; j < 20; j++) /* floors lie in the core where contacts have ended */
@@ -139,13 +133,12 @@ TEST(a_motion_that_ends_between_two_samples_ends_without_contacts_as_well)
         assert_same_number(r.j1_m, whole.j1_m);
         assert_same_number(r.j3_g, whole.j3_g);
     }
-    motion_free(&m);
 }
 
 TEST(at_fine_accuracy_contacts_are_followed_to_the_end)
 {
     SceneOptions o = paper_scene();
-    Motion m = kobe_like();
+    OWNED(motion_free) Motion m = kobe_like();
     double x[FLOORS_MAX + 2];
     bench_irregular_gaps(1, 20, x);
     x[20] = BENCH_WALL_BASE;
@@ -154,7 +147,6 @@ TEST(at_fine_accuracy_contacts_are_followed_to_the_end)
     m.n = m.n / 3;
     const SimResult r = run_with(&o, &m, SCENE_IMPACT, x);
     assert_close(r.settled_s, (double)(m.n - 1) * m.dt_s, 1e-12);
-    motion_free(&m);
 }
 
 TEST(shares_of_no_net_input_are_undefined)

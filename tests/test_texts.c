@@ -42,9 +42,9 @@ typedef struct {
 static void try_case(const Case *c)
 {
     err = (Err){0};
-    Motion m;
+    OWNED(motion_free) Motion m;
     MotionHow how = c->how;
-    char *text = lines_of(c->head, c->per_line, c->with_times, c->scale, c->zero);
+    FREED char *text = lines_of(c->head, c->per_line, c->with_times, c->scale, c->zero);
     CHECK_OK(text_form_parse(c->form ? c->form : "auto", &how.text, &err), &err);
     const Status s = motion_parse(&m, "text", text, strlen(text), &how, &err);
     if (c->says ? s != STATUS_BAD_DATA || !strstr(err.text, c->says) : s != STATUS_OK)
@@ -55,8 +55,6 @@ static void try_case(const Case *c)
         for (int k = 0; k < N; k++)
             assert_less(fabs(m.accel[k] / 9.81 - sample(k)), 2e-6);
     }
-    motion_free(&m);
-    free(text);
 }
 
 #define G                                                                                                              \
@@ -103,7 +101,7 @@ TEST(what_would_be_another_motion_is_refused_and_read_as_motion_text_says)
 TEST(rows_of_pairs_are_refused_with_the_option_and_read_by_it)
 {
     for (int pairs = 2; pairs <= 7; pairs++) {
-        char *text = NULL;
+        FREED char *text = NULL;
         size_t length;
         Motion m;
         FILE *f = open_memstream(&text, &length);
@@ -126,14 +124,13 @@ TEST(rows_of_pairs_are_refused_with_the_option_and_read_by_it)
             assert_close(motion_peak(&m), PEAK_G * 9.81, 1e-6);
             motion_free(&m);
         }
-        free(text);
     }
 }
 
 TEST(a_table_without_names_and_without_a_negative_value_is_a_spectrum)
 {
     char text[4096] = "", *p = text;
-    Motion m;
+    OWNED(motion_free) Motion m;
     MotionHow how = {.unit = UNIT_G};
     for (int k = 0; k < 100; k++)
         p += sprintf(p, "%.3f\t%.4f\n", 0.02 * k, 0.4 + 0.8 * exp(-0.1 * k));
@@ -142,14 +139,13 @@ TEST(a_table_without_names_and_without_a_negative_value_is_a_spectrum)
     CHECK_OK(text_form_parse("columns=time:1,value:2", &how.text, &err), &err);
     CHECK_OK(motion_parse(&m, "bare", text, strlen(text), &how, &err), &err);
     assert_int_equal(m.n, 100);
-    motion_free(&m);
 }
 
 TEST(the_zero_of_a_recorder_is_removed_from_counts_and_said_of_other_units)
 {
     for (int with_counts = 0; with_counts < 2; with_counts++) {
-        Motion m;
-        char *text = lines_of("", 1, 0, with_counts ? 4000 : 1, with_counts ? -20900 : 0.5);
+        OWNED(motion_free) Motion m;
+        FREED char *text = lines_of("", 1, 0, with_counts ? 4000 : 1, with_counts ? -20900 : 0.5);
         double mean = 0;
         for (int k = 0; k < N; k++)
             mean += sample(k) / N;
@@ -163,8 +159,6 @@ TEST(the_zero_of_a_recorder_is_removed_from_counts_and_said_of_other_units)
             assert_non_null(strstr(m.warning, "of its peak: if that is the zero of the recorder, motion.baseline"));
             assert_close(m.accel[47], 9.81 * (PEAK_G + 0.5), 1e-5);
         }
-        motion_free(&m);
-        free(text);
     }
 }
 
@@ -194,14 +188,12 @@ TEST(a_form_that_is_not_understood_is_refused_as_a_setting_and_an_option)
         if (text_form_parse(BAD[i], &form, &err) != STATUS_BAD_DATA || !strstr(err.text, "motion.text"))
             fail_msg("%s: %s", BAD[i], err.text);
     expect(65, "motion.text: 'skip=x' is not understood", "spectrum builtin:kobe-like --text skip=x");
-    char *text = lines_of("1\n0.02\n", 1, 0, 1, 0);
-    Said s;
+    FREED char *text = lines_of("1\n0.02\n", 1, 0, 1, 0);
+    OWNED(forget) Said s;
     write_in_place("factor.txt", text);
-    free(text);
     run(&s, "spectrum @/factor.txt --unit g --set motion.dt_s=0.02 --text skip=2 --json");
     assert_int_equal(s.code, 0);
     assert_non_null(strstr(s.out, "0.25"));
-    forget(&s);
 }
 
 /* Inputs that were read wrongly once, where the folder that holds them is there. */
@@ -232,7 +224,7 @@ TEST(the_records_of_the_shared_cases_are_read_or_refused)
         skip();
     for (size_t i = 0; i < sizeof CASES / sizeof CASES[0]; i++) {
         char path[128];
-        Motion m;
+        OWNED(motion_free) Motion m;
         MotionHow how = {.channel = CASES[i].channel, .dt_s = CASES[i].dt_s};
         snprintf(path, sizeof path, "%s/%s", folder, CASES[i].file);
         CHECK_OK(motion_unit_parse(CASES[i].unit, &how.unit, &how.counts_per_m_s2, &err), &err);
@@ -244,7 +236,6 @@ TEST(the_records_of_the_shared_cases_are_read_or_refused)
             assert_int_equal(m.n, CASES[i].n);
             assert_close(motion_peak(&m) / 9.81, CASES[i].peak_g, 1e-3);
         }
-        motion_free(&m);
     }
 }
 

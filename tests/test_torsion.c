@@ -21,9 +21,8 @@ static SceneOptions three_floors(const char *name, double less, double share)
              1.6e8 / less, 1.5e5 / less, 1.1e8 / less);
     write_storeys_in_place(name, rows);
     SceneOptions o = scene_defaults();
-    char *folder = in_place(name);
+    FREED char *folder = in_place(name);
     snprintf(o.building.model, sizeof o.building.model, "%s", folder);
-    free(folder);
     o.contact.eccentricity = LIST_OF(share);
     o.core.width_m = 3;
     o.sim.accuracy = ACCURACY_FINE;
@@ -93,7 +92,7 @@ TEST(contacts_and_edges_are_those_of_a_lighter_building_and_of_the_building_alon
         }
 
         Scene *scene;
-        Track at_contacts, alone;
+        OWNED(track_free) Track at_contacts, alone;
         CHECK_OK(scene_create(&scene, &lighter, &motion, &err), &err);
         CHECK_OK(track_run(scene, kind, X, &(LinearDevice){0}, 2e-3, &at_contacts, &err), &err);
         CHECK_OK(track_run(scene, SCENE_NO_CORE, X, &(LinearDevice){0}, 2e-3, &alone, &err), &err);
@@ -113,8 +112,6 @@ TEST(contacts_and_edges_are_those_of_a_lighter_building_and_of_the_building_alon
         assert_close(r.j1_m, j1, 1e-3);
         assert_close(r.j2_m, j2, 1e-3);
         assert_less(1.02 * of.j1_m, r.j1_m); /* it does turn */
-        track_free(&at_contacts);
-        track_free(&alone);
         scene_free(scene);
     }
     motion_free((Motion *)&motion);
@@ -123,7 +120,7 @@ TEST(contacts_and_edges_are_those_of_a_lighter_building_and_of_the_building_alon
 /* With storeys that yield, links, bumpers, a neighbour, a force on a floor. */
 TEST(both_engines_agree_on_floors_that_turn)
 {
-    Motion motion = shaking();
+    OWNED(motion_free) Motion motion = shaking();
     for (int i = 0; i < 4; i++) {
         SimResult r[ENGINE_COUNT];
         for (Engine engine = 0; engine < ENGINE_COUNT; engine++) {
@@ -150,7 +147,6 @@ TEST(both_engines_agree_on_floors_that_turn)
             assert_close(a->residual_drift_ratio, b->residual_drift_ratio, 1e-2);
         assert_less(a->energy_balance_error, 1e-6);
     }
-    motion_free(&motion);
 }
 
 /* A design of configs/engineer.ini whose building stays linear, 5 % of 30.48 m off the centre, at the corner 18.29 m
@@ -178,7 +174,7 @@ TEST(the_tower_has_its_known_response_at_the_corner)
 
 TEST(contacts_at_the_centre_and_a_building_alone_do_not_turn)
 {
-    Motion motion = shaking();
+    OWNED(motion_free) Motion motion = shaking();
     const SceneOptions o = three_floors("three", 1, 0), turns = three_floors("three", 1, SHARE);
     SceneOptions none = o;
     none.contact.eccentricity = LIST_OF(0, 3);
@@ -190,7 +186,6 @@ TEST(contacts_at_the_centre_and_a_building_alone_do_not_turn)
     assert_close(a.j1_m, b.j1_m, 1e-9);
     assert_close(a.j3_g, b.j3_g, 1e-9);
     assert_close(a.ed1_pct, b.ed1_pct, 1e-9);
-    motion_free(&motion);
 }
 
 TEST(a_contact_beyond_the_edge_is_refused)

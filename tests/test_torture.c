@@ -101,21 +101,17 @@ static int same_file(const char *a, const char *b, const char *name)
     char paths[2][256];
     snprintf(paths[0], sizeof paths[0], "%s/%s", a, name);
     snprintf(paths[1], sizeof paths[1], "%s/%s", b, name);
-    char *first = text_of(paths[0]), *second = text_of(paths[1]);
+    FREED char *first = text_of(paths[0]), *second = text_of(paths[1]);
     const int same = strcmp(first, second) == 0;
-    free(first);
-    free(second);
     return same;
 }
 
 /* Every evaluation, digests included. */
 static int same_run(const char *a, const char *b)
 {
-    Run first, second;
+    OWNED(run_free) Run first, second;
     const int seen = look(a, &first) == 1 && look(b, &second) == 1;
     const int same = seen && first.table.n == second.table.n && count_lost(&first, &second) == 0;
-    run_free(&first);
-    run_free(&second);
     return same;
 }
 

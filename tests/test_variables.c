@@ -100,11 +100,10 @@ TEST(wrong_variables_are_refused_with_their_key)
     static const char *const LISTS[] = {
         "gaps", "thickness, bumper", "gaps, thickness, bumpr", "gaps,,thickness", "gaps, thickness, symmetric", "none"};
     for (size_t i = 0; i < sizeof LISTS / sizeof LISTS[0]; i++) {
-        Said s;
+        OWNED(forget) Said s;
         run(&s, "simulate configs/quick.ini --design none --set 'design.variables=%s'", LISTS[i]);
         assert_int_not_equal(s.code, 0);
         assert_non_null(strstr(s.err, "design.variables"));
-        forget(&s);
     }
     DesignSpace space;
     DesignOptions o = scene_defaults().design;
@@ -117,7 +116,7 @@ TEST(wrong_variables_are_refused_with_their_key)
 
 static SimResult simulate(const SceneOptions *o, const double x[])
 {
-    Motion motion;
+    OWNED(motion_free) Motion motion;
     Scene *scene;
     SimWorker *worker;
     SimResult r;
@@ -128,7 +127,6 @@ static SimResult simulate(const SceneOptions *o, const double x[])
     CHECK_OK(sim_run(worker, SCENE_IMPACT, x, &r, &err), &err);
     sim_worker_free(worker);
     scene_free(scene);
-    motion_free(&motion);
     assert_int_equal(r.outcome, RUN_OK);
     assert_less(10, r.impacts);
     return r;
@@ -183,13 +181,12 @@ static int end_run(void **state)
 
 TEST(a_named_design_that_cannot_be_predicted_is_said_to_be_so)
 {
-    Run run;
+    OWNED(run_free) Run run;
     char path[PATH_MAX];
     long n = 0;
     CHECK_OK(run_read(&run, path_of("run", path), &err), &err);
     for (size_t k = 0; k <= run.schema.n_obj; k++)
         n += run_is_unpredictable(&run, k < run.schema.n_obj ? run_best(&run, k) : run_knee(&run));
-    run_free(&run);
     for (const char *at = said; (at = strstr(at, "  unpredictable\n")); at++)
         n--;
     assert_int_equal(n, 0);
@@ -213,9 +210,8 @@ TEST(every_command_follows_the_variables_of_a_run)
         "report @/run",
     };
     char path[PATH_MAX];
-    char *front = text_of(path_of("run/front.csv", path));
+    FREED char *front = text_of(path_of("run/front.csv", path));
     assert_int_equal(strncmp(front, HEADER, sizeof HEADER - 1), 0);
-    free(front);
     for (size_t i = 0; i < sizeof COMMANDS / sizeof COMMANDS[0]; i++) {
         free(output_of("%s", COMMANDS[i]));
     }

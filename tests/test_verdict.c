@@ -27,11 +27,10 @@ static int make_run(void **state)
         "optimize configs/quick.ini " SIX_FLOORS "--out @/run --max-evals 10 --set search.initial=8 --set "
         "search.population=8 --set search.polish=0 --set sim.accuracy=coarse --record builtin:kobe-like --set "
         "motion.records=builtin:elcentro-like --set sim.duration_s=8 --set core.foundation=fixed"));
-    char *stored = read_in_place("run/verdicts.json");
+    FREED char *stored = read_in_place("run/verdicts.json");
     json_t *all = json_loads(stored, 0, NULL), *text = json_object_iter_value(json_object_iter(all));
-    Run run = run_in("run");
+    OWNED(run_free) Run run = run_in("run");
     id = run.table.row[run_knee(&run)].id;
-    run_free(&run);
     if (!text || atol(json_object_iter_key(json_object_iter(all))) != id)
         return -1;
     snprintf(verdict, sizeof verdict, "%s", json_string_value(text));
@@ -44,7 +43,6 @@ static int make_run(void **state)
             snprintf(sentence[n++], sizeof *sentence, "%.*s", (int)(end - at), at);
     }
     json_decref(all);
-    free(stored);
     return sentence[4][0] ? 0 : -1;
 }
 
@@ -64,17 +62,15 @@ TEST(the_verdict_is_the_same_at_the_end_of_every_command_in_the_report_and_in_th
     static const char *const COMMANDS[] = {"optimize @/run", "choose @/run", "evaluate @/run --design knee"};
     char *page, line[6100];
     for (size_t i = 0; i < N_OF(COMMANDS); i++) {
-        char *said = output_of("%s", COMMANDS[i]);
+        FREED char *said = output_of("%s", COMMANDS[i]);
         for (size_t k = 0; k < N_OF(sentence); k++)
             if (!strstr(said, sentence[k]))
                 fail_msg("%s does not say: %s", COMMANDS[i], sentence[k]);
-        free(said);
     }
     free(output_of("report @/run --out @/page.html"));
     page = read_in_place("page.html");
-    json_t *run = json_loads(strchr(strstr(page, "id=\"run\">"), '>') + 1, JSON_DISABLE_EOF_CHECK, NULL);
+    json_auto_t *run = json_loads(strchr(strstr(page, "id=\"run\">"), '>') + 1, JSON_DISABLE_EOF_CHECK, NULL);
     assert_string_equal(json_string_value(json_object_get(json_object_get(run, "detail"), "verdict")), verdict);
-    json_decref(run);
     free(page);
     free(output_of("report @/run --dossier @/d.html"));
     page = read_in_place("d.html");
@@ -91,33 +87,30 @@ TEST(a_verdict_that_is_not_stored_is_found_again_word_for_word)
     char *said = output_of("evaluate @/run --design knee"), path[128];
     snprintf(path, sizeof path, "%s/run/verdicts.json", place.folder);
     assert_int_equal(unlink(path), 0);
-    char *again = output_of("evaluate @/run --design knee");
+    FREED char *again = output_of("evaluate @/run --design knee");
     assert_string_equal(said, again);
     free(said);
-    free(again);
 }
 
 TEST(factors_are_medians_over_the_records_of_simulations_one_by_one)
 {
     static const char *const OTHERS[] = {"no core", "rigidly connected", "viscous links"};
 #define BOTH "evaluate @/run --design knee --record builtin:kobe-like --record builtin:elcentro-like"
-    json_t *links = json_of(BOTH " --json");
-    char *said = output_of(BOTH); /* its links are those of each record, the stored verdict has one constant */
+    json_auto_t *links = json_of(BOTH " --json");
+    FREED char *said = output_of(BOTH); /* its links are those of each record, the stored verdict has one constant */
     for (size_t o = 0; o < N_OF(OTHERS); o++)
         for (size_t k = 0; k < N_OF(KEYS); k++) {
             double ratio[N_RECORDS];
             size_t better = 0;
             char wanted[80], head[80];
             for (size_t r = 0; r < N_RECORDS; r++) {
-                json_t *own = simulated(r, "@/run:knee", ""), *other = NULL;
+                json_auto_t *own = simulated(r, "@/run:knee", ""), *other = NULL;
                 if (o < 2)
                     other = o == 0 ? simulated(r, "none", "") : simulated(r, "@/run:knee", "--rigid");
                 const json_t *record = json_array_get(json_object_get(links, "records"), r);
                 const double its = number(o < 2 ? other : json_object_get(record, "links"), KEYS[k]);
                 ratio[r] = number(own, KEYS[k]) / its;
                 better += ratio[r] < 0.999;
-                json_decref(own);
-                json_decref(other);
             }
             const char *text = o < 2 ? sentence[0] : strstr(said, "Against no core");
             snprintf(head, sizeof head, "gainst %s ", OTHERS[o]);
@@ -127,8 +120,6 @@ TEST(factors_are_medians_over_the_records_of_simulations_one_by_one)
             if (strncmp(strchr(at, '('), wanted, strlen(wanted)) != 0)
                 fail_msg("%s: not '%s'", at, wanted);
         }
-    json_decref(links);
-    free(said);
 }
 
 /* Of what the last sentence sets, the effects: without its remedies, and on a mat that weight alone holds down. */
@@ -136,10 +127,9 @@ TEST(the_model_is_that_of_the_settings_that_the_last_sentence_asks_for)
 {
     static const char *const EFFECTS[] = {"core.theory=", "core.foundation=", "core.wall=", "contact.", "building."};
     char more[1200] = "", *anchors;
-    json_t *own = simulated(0, "@/run:knee", "");
+    json_auto_t *own = simulated(0, "@/run:knee", "");
     assert_close(number_behind(sentence[1], strstr(sentence[1], "instead of") ? "instead of" : "need:", "J1 "),
                  number(own, "j1_m"), 5e-3);
-    json_decref(own);
     if (!strstr(sentence[1], "instead of"))
         skip();
     for (const char *at = strstr(sentence[4], " --set "), *end; at; at = *end ? end : NULL) {
@@ -152,11 +142,10 @@ TEST(the_model_is_that_of_the_settings_that_the_last_sentence_asks_for)
     }
     if ((anchors = strstr(more, "anchors=")))
         memmove(anchors + 9, strchr(anchors, '\''), strlen(strchr(anchors, '\'')) + 1), anchors[8] = '1';
-    json_t *needed = simulated(0, "@/run:knee", more);
+    json_auto_t *needed = simulated(0, "@/run:knee", more);
     for (size_t k = 0; k < N_OF(KEYS); k++)
         assert_close(number_behind(sentence[1], "it has", NAMES[k]), (k == 1 ? 100 : 1) * number(needed, KEYS[k]),
                      5e-3);
-    json_decref(needed);
 }
 
 TEST(as_built_is_the_mean_and_deviation_of_its_structures)
@@ -180,13 +169,12 @@ TEST(demands_are_the_largest_of_all_records_over_their_limits_in_descending_orde
 {
     double buckling = 0, drift = 0, stress = 0, moment = 0, mass = 0, before = INFINITY;
     for (size_t r = 0; r < N_RECORDS; r++) {
-        json_t *o = simulated(r, "@/run:knee", "");
+        json_auto_t *o = simulated(r, "@/run:knee", "");
         buckling = fmax(buckling, number(o, "core_buckling_ratio"));
         drift = fmax(drift, number(o, "drift_ratio"));
         stress = fmax(stress, number(o, "core_stress_pa"));
         moment = fmax(moment, number(o, "core_overturning_nm"));
         mass = number(o, "mcore_kg");
-        json_decref(o);
     }
     assert_close(number_behind(sentence[3], "", "bare wall "), buckling, 5e-3);
     assert_close(number_behind(sentence[3], "", "steel frame "), drift / DAMAGE_PARTS[PART_STRUCTURE].median[2], 5e-3);

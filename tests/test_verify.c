@@ -3,7 +3,7 @@
 
 static void write_design(const char *name)
 {
-    char *path = in_place(name);
+    FREED char *path = in_place(name);
     FILE *f = fopen(path, "w");
     assert_non_null(f);
     for (int j = 0; j < 20; j++)
@@ -15,7 +15,6 @@ static void write_design(const char *name)
         fprintf(f, "0.02,0.008\n");
     }
     assert_int_equal(fclose(f), 0);
-    free(path);
 }
 
 static const char *const KEYS[] = {"j1_m",       "j2_m",     "j3_g",         "ed1_pct",
@@ -30,9 +29,10 @@ static void expect_same(const json_t *a, const json_t *b)
 TEST(both_models_are_what_simulate_gives)
 {
     write_design("d.csv");
-    json_t *v = json_of("evaluate --full-model configs/quick.ini --design @/d.csv:1 --set sim.duration_s=40 --json");
-    json_t *all = json_of("simulate configs/quick.ini --design @/d.csv --set sim.duration_s=40 --json");
-    json_t *full = json_of(
+    json_auto_t *v =
+        json_of("evaluate --full-model configs/quick.ini --design @/d.csv:1 --set sim.duration_s=40 --json");
+    json_auto_t *all = json_of("simulate configs/quick.ini --design @/d.csv --set sim.duration_s=40 --json");
+    json_auto_t *full = json_of(
         "simulate configs/quick.ini --design @/d.csv:1 --set sim.duration_s=40 --set building.modes=100000 --json");
     json_t *reduced = json_object_get(v, "reduced"), *error = json_object_get(v, "error");
     expect_same(reduced, json_array_get(all, 0));
@@ -42,17 +42,14 @@ TEST(both_models_are_what_simulate_gives)
     assert_close(number(error, "j2_m"), number(reduced, "j2_m") / number(full, "j2_m") - 1, 1e-9);
     assert_at_most(10, number(full, "impacts"));
     assert_true(fabs(number(error, "j1_m")) < 0.005 && fabs(number(error, "ed1_pct")) < 0.01);
-    json_decref(v);
-    json_decref(all);
-    json_decref(full);
 }
 
 TEST(designs_and_records_make_a_list_in_their_order)
 {
     write_design("d.csv");
-    json_t *v = json_of("evaluate --full-model configs/quick.ini --design @/d.csv --set sim.duration_s=5 --record "
-                        "builtin:kobe-like --record "
-                        "builtin:elcentro-like --json");
+    json_auto_t *v = json_of("evaluate --full-model configs/quick.ini --design @/d.csv --set sim.duration_s=5 --record "
+                             "builtin:kobe-like --record "
+                             "builtin:elcentro-like --json");
     assert_int_equal((int)json_array_size(v), 4);
     for (size_t i = 0; i < 4; i++) {
         const json_t *o = json_array_get(v, i);
@@ -60,18 +57,16 @@ TEST(designs_and_records_make_a_list_in_their_order)
         assert_string_equal(json_string_value(json_object_get(o, "record")),
                             i < 2 ? "builtin:kobe-like" : "builtin:elcentro-like");
     }
-    json_decref(v);
 }
 
 TEST(fixed_interface_modes_are_verified_as_the_reduced_model)
 {
-    json_t *v = json_of(
+    json_auto_t *v = json_of(
         "evaluate --full-model configs/quick.ini --design none --set sim.duration_s=20 --set building.modes=30 --json");
     const json_t *error = json_object_get(v, "error");
     assert_int_equal((int)number(json_object_get(v, "degrees_of_freedom"), "reduced"), 51);
     assert_true(fabs(number(error, "j1_m")) < 1e-4 && fabs(number(error, "j3_g")) < 1e-3);
     assert_null(json_object_get(v, "design"));
-    json_decref(v);
 }
 
 SUITE(make_place, clear_place)

@@ -93,7 +93,7 @@ static SimResult simulated(SceneOptions *o, SceneKind kind, Engine engine)
 {
     SimResult r;
     SimWorker *worker;
-    Scenario w = {0};
+    OWNED(scenario_close) Scenario w = {0};
     Settings s;
     double x[N + 2];
     settings_defaults(&s);
@@ -111,7 +111,6 @@ static SimResult simulated(SceneOptions *o, SceneKind kind, Engine engine)
         CHECK_OK(sim_run(worker, kind, x, &r, &err), &err);
     assert_int_equal(r.outcome, RUN_OK);
     sim_worker_free(worker);
-    scenario_close(&w);
     return r;
 }
 

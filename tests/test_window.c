@@ -68,8 +68,8 @@ static void compare_accuracies(size_t n, const Window windows[])
 {
     for (size_t i = 0; i < n; i++) {
         SceneOptions s;
-        Motion m;
-        BenchCase c;
+        OWNED(motion_free) Motion m;
+        OWNED(bench_case_close) BenchCase c;
         double f[BENCH_OBJECTIVES], e[BENCH_OBJECTIVES];
         open_window(&windows[i], &s, &m, &c);
         const SimResult reference = run(&c, ENGINE_CVODE, ACCURACY_FINE), fine = run(&c, ENGINE_FAST, ACCURACY_FINE),
@@ -84,8 +84,6 @@ static void compare_accuracies(size_t n, const Window windows[])
             assert_at_most(f[k], FINE);
             assert_at_most(e[k], STANDARD[k]);
         }
-        bench_case_close(&c);
-        motion_free(&m);
     }
 }
 
@@ -103,8 +101,8 @@ TEST(peaks_of_a_stiff_building_beside_a_core_are_those_of_fine_accuracy)
 {
     for (int stiffer = 5; stiffer <= 80; stiffer *= 4) {
         SceneOptions s;
-        Motion m;
-        BenchCase c;
+        OWNED(motion_free) Motion m;
+        OWNED(bench_case_close) BenchCase c;
         double e[BENCH_OBJECTIVES];
         open_window(&(Window){"builtin:elcentro-like", "guyan", CORE_BOX, 1, 1, 1.0, 6, 0}, &s, &m, &c);
         for (int i = 0; i < c.model.m; i++) {
@@ -117,8 +115,6 @@ TEST(peaks_of_a_stiff_building_beside_a_core_are_those_of_fine_accuracy)
                       e[0], e[1], e[2]);
         for (int k = 0; k < 3; k++)
             assert_at_most(e[k], STANDARD[k]);
-        bench_case_close(&c);
-        motion_free(&m);
     }
 }
 

@@ -28,16 +28,12 @@ TEST(no_design_is_left_out_whatever_its_message)
         snprintf(command, sizeof command, "sh tests/worker.sh %s", MODES[i]);
         write_external("words.ini", command, "max_evals = 24\n");
         free(output_of("optimize @/words.ini --out @/words"));
-        json_t *all = json_of("export @/words --json"), *status = json_of("status @/words --json");
+        json_auto_t *all = json_of("export @/words --json"), *status = json_of("status @/words --json");
         assert_int_equal(json_array_size(json_object_get(all, "evaluations")), 24);
         assert_int_equal(count_failures(status), 8);
-        char *csv = all_of("words");
-        json_t *text = json_string(csv); /* refuses what is no UTF-8 */
+        FREED char *csv = all_of("words");
+        json_auto_t *text = json_string(csv); /* refuses what is no UTF-8 */
         assert_non_null(text);
-        json_decref(text);
-        free(csv);
-        json_decref(all);
-        json_decref(status);
         char remove[128];
         snprintf(remove, sizeof remove, "rm -r '%s/words'", place.folder);
         assert_int_equal(system(remove), 0);
@@ -48,15 +44,12 @@ TEST(names_that_are_no_utf_8_are_shown)
 {
     write_in_place("textbook.ini", TEXTBOOK);
     free(output_of("optimize @/textbook.ini --out @/runs/stra\337e"));
-    json_t *status = json_of("status @/runs/stra\337e --json"), *list = json_of("status @/runs --json"),
-           *all = json_of("export @/runs/stra\337e --json");
+    json_auto_t *status = json_of("status @/runs/stra\337e --json"), *list = json_of("status @/runs --json"),
+                *all = json_of("export @/runs/stra\337e --json");
     assert_non_null(strstr(json_string_value(json_object_get(status, "run")), "stra\\xDFe"));
     assert_int_equal(json_array_size(list), 1);
     assert_non_null(json_object_get(json_object_get(all, "settings"), "run.out"));
     free(output_of("report @/runs/stra\337e"));
-    json_decref(status);
-    json_decref(list);
-    json_decref(all);
 }
 
 /* -- the system ---------------------------------------------------------------------------------------------------- */
@@ -90,15 +83,12 @@ TEST(designs_that_are_asked_together_have_the_answers_of_those_asked_one_by_one)
         write_in_place("batch.ini", text);
         free(output_of("optimize @/batch.ini --out @/%s", HOW[i]));
     }
-    char *alone = all_of("alone"), *together = all_of("together"), *sizes = read_in_place("sizes-together");
+    FREED char *alone = all_of("alone"), *together = all_of("together"), *sizes = read_in_place("sizes-together");
     assert_string_equal(alone, together);
     assert_non_null(strstr(alone, ",dead,"));
     assert_non_null(strstr(alone, ",timeout,"));
     assert_non_null(strstr(alone, ",error,no"));
     assert_non_null(strstr(sizes, "8\n")); /* lines of two workers: which follows which is chance */
-    free(alone);
-    free(together);
-    free(sizes);
 }
 
 /* Nor does a kill: the run goes on at once, even where one of them could do nothing any more. */
@@ -130,7 +120,7 @@ TEST(a_simulation_that_crashes_ends_its_design_alone)
     }
     assert_true(WIFEXITED(status));
     assert_int_equal(WEXITSTATUS(status), 0);
-    char *all = all_of("shot");
+    FREED char *all = all_of("shot");
     size_t n_lost = 0, n = 0;
     for (const char *at = all; (at = strchr(at, '\n')); at++, n++) {
         const char *lost = strstr(at, "its process ended");
@@ -139,7 +129,6 @@ TEST(a_simulation_that_crashes_ends_its_design_alone)
     assert_int_equal(n, 81);
     assert_true(n_lost >= 1 && n_lost <= n_shot);
     assert_non_null(strstr(all, "its process ended: Killed"));
-    free(all);
 }
 
 SUITE(prepare, clear_place)

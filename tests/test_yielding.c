@@ -105,13 +105,12 @@ TEST(a_storey_under_a_sudden_load_turns_where_the_energies_say)
     const Motion m = {.accel = accel, .n = 8, .dt_s = 0.25};
     for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++)
         for (int e = 0; e < N_ENGINES; e++) {
-            SimModel model = one_storey(cases[k].law);
+            OWNED(model_free) SimModel model = one_storey(cases[k].law);
             const SimResult r = run(ENGINES[e], &model, &m, 1); /* Bouc-Wen goes farther when it comes back */
             const double x = turning_point(A, cases[k].held);
             assert_less(1.2 * YIELD, x);
             assert_close(r.j1_m, x, 2e-6);
             assert_close(r.ductility, x / YIELD, 2e-6);
-            model_free(&model);
         }
 }
 
@@ -162,13 +161,12 @@ TEST(a_bilinear_storey_under_half_a_sine_is_as_biggs_says)
     const double x = biggs(A);
     assert_less(1.5 * YIELD, x);
     for (int e = 0; e < N_ENGINES; e++) {
-        SimModel model = one_storey((StoreyLaw){.kind = HYSTERESIS_BILINEAR});
+        OWNED(model_free) SimModel model = one_storey((StoreyLaw){.kind = HYSTERESIS_BILINEAR});
         const SimResult r = run(ENGINES[e], &model, &m, PULSE);
         assert_close(r.j1_m, x, 3e-6);
         assert_close(fabs(r.plastic_drift_m[0]), x - YIELD, 1e-5);
         /* unloading did not yield again: hysteresis is force times way */
         assert_close(r.hysteresis_j, model.yield_n_m[0] * YIELD * (x - YIELD), 1e-5);
-        model_free(&model);
     }
 }
 
@@ -196,12 +194,11 @@ TEST(the_largest_acceleration_is_known_where_a_storey_begins_to_yield)
 {
     for (int i = 0; i < 6; i++) {
         const double yield = YIELD * (0.4 + 0.2 * i);
-        SimModel model = damped_storey(yield);
+        OWNED(model_free) SimModel model = damped_storey(yield);
         const Motion m = cycles(0.9);
         const SimResult exact = run(ENGINE_CVODE, &model, &m, 3), fast = run(ENGINE_FAST, &model, &m, 3);
         assert_less(1.2, exact.ductility);
         assert_close(fast.j3_g, exact.j3_g, 1e-6);
-        model_free(&model);
     }
 }
 
@@ -358,7 +355,7 @@ TEST(both_engines_agree_where_storeys_lose_strength_and_stiffness)
 /* Six floors that yield at that drift, for some seconds, with a device of each kind where the scene has one. */
 static SimResult run_few(Engine engine, SceneKind kind, double yield_drift, double seconds)
 {
-    Tower t;
+    OWNED(tower_close) Tower t;
     SimResult r;
     builtin_tower(&t, engine, yield_drift);
     six_floors(&t.settings.building, &t.settings.core);
@@ -370,7 +367,6 @@ static SimResult run_few(Engine engine, SceneKind kind, double yield_drift, doub
     t.x[6] = t.x[7] = 0.02;
     sim_worker_device(t.worker, &(LinearDevice){.link_ns_m = 3e5, .tmd_hz = 1, .tmd_damping = 0.1});
     CHECK_OK(sim_run(t.worker, kind, t.x, &r, &err), &err);
-    tower_close(&t);
     assert_int_equal(r.outcome, RUN_OK);
     return r;
 }
@@ -431,14 +427,13 @@ TEST(equipment_on_a_floor_that_yields_feels_the_same_by_both_engines)
 /* Dashpots that hardly resist leave the building alone. */
 TEST(links_that_do_nothing_leave_the_yielding_building_alone)
 {
-    Tower t;
+    OWNED(tower_close) Tower t;
     SimResult links;
     builtin_tower(&t, ENGINE_FAST, 0.004);
     const SimResult bare = builtin_run(&t, SCENE_NO_CORE);
     tower_open(&t, 0.030, 0.0216);
     sim_worker_device(t.worker, &(LinearDevice){.link_ns_m = 1e-3});
     CHECK_OK(sim_run(t.worker, SCENE_LINKS, t.x, &links, &err), &err);
-    tower_close(&t);
     assert_int_equal(links.outcome, RUN_OK);
     assert_less(5, bare.ed_hysteresis_pct);
     links.ed_hysteresis_pct *= links.input_energy_j / bare.input_energy_j; /* the ground moves the core as well */
@@ -467,7 +462,7 @@ TEST(the_energy_of_yielding_storeys_is_accounted_for)
 TEST(very_weak_storeys_under_strong_shaking_stay_stable)
 {
     for (int law = HYSTERESIS_BILINEAR; law <= HYSTERESIS_BOUC_WEN; law++) {
-        Tower t;
+        OWNED(tower_close) Tower t;
         builtin_tower(&t, ENGINE_FAST, 1e-4);
         t.settings.building.hysteresis = (Hysteresis)law;
         t.settings.sim.accuracy = ACCURACY_STANDARD;
@@ -478,7 +473,6 @@ TEST(very_weak_storeys_under_strong_shaking_stay_stable)
         for (size_t i = 0; i < t.motion.n; i++)
             t.motion.accel[i] = -t.motion.accel[i];
         const SimResult mirrored = tower_run(&t, SCENE_IMPACT);
-        tower_close(&t);
         assert_less(15, r.ductility);
         assert_less(r.energy_balance_error, 1e-4);
         assert_memory_equal(&r.j1_m, &mirrored.j1_m, 6 * sizeof(double));

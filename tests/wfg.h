@@ -63,7 +63,7 @@ static inline double wfg_volume_of(size_t m, size_t n, double P[], const double 
 /* F (n, m) minimised; points that are not below the reference in every objective add nothing. */
 static inline double wfg_hypervolume(size_t n, size_t m, const double F[], const double reference[])
 {
-    double *store = calloc((n + 1) * m * (m + 1), sizeof *store);
+    FREED double *store = calloc((n + 1) * m * (m + 1), sizeof *store);
     size_t count = 0;
     assert_non_null(store);
     for (size_t i = 0; i < n; i++) {
@@ -74,7 +74,6 @@ static inline double wfg_hypervolume(size_t n, size_t m, const double F[], const
             memcpy(store + count++ * m, F + i * m, m * sizeof *F);
     }
     const double volume = wfg_volume_of(m, count, store, reference, store + (n + 1) * m);
-    free(store);
     return volume;
 }
 
