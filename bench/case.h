@@ -9,8 +9,7 @@
  * Life cycle  bench_case_open -> bench_case_close
  * Ownership   borrows the whole motion
  * Threads     one owner at a time */
-#ifndef IMTET_BENCH_CASE_H
-#define IMTET_BENCH_CASE_H
+#pragma once
 
 #include "base/random.h"
 #include "motion/motion.h"
@@ -47,5 +46,3 @@ void bench_irregular_gaps(uint32_t design, int n, double gaps[]);
 
 /* The window of a motion that starts one second before it first reaches three tenths of its peak. */
 Motion bench_window(const Motion *whole, double *start_s);
-
-#endif

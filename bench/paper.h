@@ -1,6 +1,5 @@
 /* bench/paper.h -- the settings of the paper's study (configs/kobe.ini), on which engines are compared. */
-#ifndef IMTET_BENCH_PAPER_H
-#define IMTET_BENCH_PAPER_H
+#pragma once
 
 #include "settings/settings.h"
 
@@ -11,5 +10,3 @@ static inline void paper_defaults(Settings *s)
     s->motion.pga_g = 0.3;
     s->motion.stretch = 3.1;
 }
-
-#endif

@@ -16,8 +16,7 @@
  * not predictable.
  *
  * Threads  none: timings want the machine to themselves */
-#ifndef IMTET_BENCH_PROMISE_H
-#define IMTET_BENCH_PROMISE_H
+#pragma once
 
 #include <stdio.h>
 
@@ -66,5 +65,3 @@ Status promise_case(const PromisePlan *plan, int n_floors, GapKind kind, long k,
  * scenes. share_pct: of the cases that hold the promise, or whose error is below the bound of the estimate;
  * wider_pct: the same where all gaps wider by 1e-6 alone decide what is predictable. */
 Status promise_write(const PromisePlan *plan, FILE *out, FILE *progress, Err *err);
-
-#endif

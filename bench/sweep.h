@@ -6,8 +6,7 @@
  *
  * Ownership  sweep_free releases the rows
  * Threads    none: timings want the machine to themselves */
-#ifndef IMTET_BENCH_SWEEP_H
-#define IMTET_BENCH_SWEEP_H
+#pragma once
 
 #include <stdio.h>
 
@@ -43,5 +42,3 @@ double sweep_floor(const Sweep *s, int kind);
 int sweep_row_failed(const SweepRow *row);
 
 void sweep_write(const Sweep *s, FILE *out); /* as CSV */
-
-#endif

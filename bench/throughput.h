@@ -3,8 +3,7 @@
  * window, and `fast` is timed on the same.
  *
  * Threads  none but those of the worker pool that it times */
-#ifndef IMTET_BENCH_THROUGHPUT_H
-#define IMTET_BENCH_THROUGHPUT_H
+#pragma once
 
 #include <stdio.h>
 
@@ -12,5 +11,3 @@
 
 /* quick: four designs, shorter comparisons. count: the fast engine on four designs, nothing to compare with. */
 Status throughput_print(const SceneOptions *s, const Motion *motion, int quick, int count, FILE *out, Err *err);
-
-#endif

@@ -1,8 +1,7 @@
 /* bench/timed_run.h -- one timed run of an engine on a benchmark case, and its errors against another.
  *
  * Threads  none: timings want the machine to themselves */
-#ifndef IMTET_BENCH_TIMED_RUN_H
-#define IMTET_BENCH_TIMED_RUN_H
+#pragma once
 
 #include "bench/case.h"
 
@@ -38,5 +37,3 @@ double bench_quantile(int n, double x[], double share);
 
 /* [s] of this thread: less disturbed by other work on the machine than wall time. */
 double processor_seconds(void);
-
-#endif

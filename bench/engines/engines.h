@@ -2,8 +2,7 @@
  * methods beside it.
  *
  * A further engine is a function of type EngineFn and a line of REFERENCE_ENGINES: name, kind of its tolerance. */
-#ifndef IMTET_BENCH_ENGINES_H
-#define IMTET_BENCH_ENGINES_H
+#pragma once
 
 #include "sim/engine.h"
 
@@ -32,5 +31,3 @@ const EngineEntry *bench_engine(int engine);
 
 /* The engine of this name; BENCH_ENGINES: there is none. */
 int bench_engine_named(const char *name);
-
-#endif

@@ -7,8 +7,7 @@
  * the current state, at the start of a step and (after fixed_step_forces) at any stage.
  *
  * Threads  no state but the struct */
-#ifndef IMTET_BENCH_FIXED_STEP_H
-#define IMTET_BENCH_FIXED_STEP_H
+#pragma once
 
 #include "sim/cvode/energy_account.h"
 
@@ -35,5 +34,3 @@ Status fixed_step_run(const FixedStepMethod *method, void *work, const SimModel 
 
 /* Contact forces at a state: g (m) is overwritten. */
 ContactPower fixed_step_forces(FixedStep *m, const double q[], const double v[], double g[]);
-
-#endif

@@ -6,8 +6,7 @@
  *     w = w_free + A f,   w' = wd_free + B f,   f_k = -s F(|w_k| - gap, s w'_k, v0),  s = sign(w_k)
  *
  * v0: contacts_speed, constant over the step. Life cycle  implicit_create -> implicit_solve ... -> implicit_free */
-#ifndef IMTET_BENCH_IMPLICIT_H
-#define IMTET_BENCH_IMPLICIT_H
+#pragma once
 
 #include "sim/cvode/contacts.h"
 
@@ -29,5 +28,3 @@ void implicit_free(Implicit *x);
 
 /* 0: Newton did not converge. */
 int implicit_solve(Implicit *x, const Contacts *c);
-
-#endif

@@ -3,8 +3,7 @@
  * Life cycle  course_create -> course_add ... -> course_free
  * Shapes      row-major F (n, n_obj), minimised
  * Threads     one Course per thread */
-#ifndef IMTET_BENCH_SEARCH_COURSE_H
-#define IMTET_BENCH_SEARCH_COURSE_H
+#pragma once
 
 #include "evaluate/problem.h"
 
@@ -19,5 +18,3 @@ typedef struct {
 Status course_create(Course *c, size_t n_max, size_t n_obj, Err *err);
 void course_free(Course *c); /* a Course of zeros is fine */
 void course_add(Course *c, const double f[], int counts);
-
-#endif

@@ -10,8 +10,7 @@
  * designs that succeeded and keep the limits. Medians over the seeds; over the problems the geometric mean.
  *
  * Threads  those of the search */
-#ifndef IMTET_BENCH_SEARCH_FACTORS_H
-#define IMTET_BENCH_SEARCH_FACTORS_H
+#pragma once
 
 #include <stdio.h>
 
@@ -31,5 +30,3 @@ Status search_course(const Settings *s, const Problem *p, SurrogateUse surrogate
 
 /* One line per problem, as they are done, then the means. */
 Status factors_run(const FactorPlan *plan, FILE *out, Err *err);
-
-#endif

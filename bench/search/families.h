@@ -11,8 +11,7 @@
  * which stand for tenths, then choices of five words for 0, 3/4, 1/4, 1, 1/2: their distance's zero lies on these.
  *
  * Threads  pure functions of what family_open has made */
-#ifndef IMTET_BENCH_SEARCH_FAMILIES_H
-#define IMTET_BENCH_SEARCH_FAMILIES_H
+#pragma once
 
 #include "evaluate/problem.h"
 
@@ -37,5 +36,3 @@ double family_evaluate(const Problem *p, const double x[], double f[]);
  * share 0..1 of a curve; of quadratics, which have no such variables, in their midst. Returns how many variables say
  * where on the front; the others hold the distance. */
 size_t family_place(const Problem *p, const double w[], double share, double x[]);
-
-#endif

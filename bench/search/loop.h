@@ -17,8 +17,7 @@
  * Hypervolume as of a run (store/store.c): a box about the first sample, from a fifth of its range below the best to the
  *             worst; of simulated designs alone
  * Threads     those of the simulator and the interpolant; the same bytes for any number of them */
-#ifndef IMTET_BENCH_SEARCH_LOOP_H
-#define IMTET_BENCH_SEARCH_LOOP_H
+#pragma once
 
 #include <stdio.h>
 
@@ -32,5 +31,3 @@ typedef struct {
 
 /* Rows of iterations and, of the search, generations, as CSV. */
 Status loop_run(const LoopPlan *plan, FILE *out, Err *err);
-
-#endif

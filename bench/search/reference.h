@@ -7,8 +7,7 @@
  * another one dominates moves there; what is dominated is left out.
  *
  * Threads  no state */
-#ifndef IMTET_BENCH_SEARCH_REFERENCE_H
-#define IMTET_BENCH_SEARCH_REFERENCE_H
+#pragma once
 
 #include "bench/search/course.h"
 
@@ -16,5 +15,3 @@ enum { REFERENCES = 200 };
 
 /* c holds them, those that count. */
 Status reference_make(const Problem *p, Course *c, Err *err);
-
-#endif

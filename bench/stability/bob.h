@@ -2,8 +2,7 @@
  * wall.
  *
  * Floor j is one building mode; the core is one mode that cannot be moved, or one free mass that all floors hit. */
-#ifndef IMTET_BENCH_BOB_H
-#define IMTET_BENCH_BOB_H
+#pragma once
 
 #include <math.h>
 #include <string.h>
@@ -50,5 +49,3 @@ static inline void bobs_model(SimModel *model, int n, const Bob bobs[], double c
         model->R[n * model->n_pad + j] = model->RT[j * model->m_pad + n] = -core;
     }
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* bench/stability/laws.h -- the contact laws measured: rebound against r, what the no-tension condition removes, what law
  * and smallest approach speed change in the tower, and whether engines that share no method agree there under each. */
-#ifndef IMTET_BENCH_LAWS_H
-#define IMTET_BENCH_LAWS_H
+#pragma once
 
 #include "base/status.h"
 
@@ -12,5 +11,3 @@ typedef struct {
 
 /* Prints the checks. Errors  a law is not what it should be; with the table of engines, one is outside the promise */
 Status laws(const LawTables *tables, Err *err);
-
-#endif

@@ -1,7 +1,6 @@
 /* bench/stability/need.h -- set-up that must succeed: a case that cannot begin ends its process, which counts as a
  * failure of the case. */
-#ifndef IMTET_BENCH_NEED_H
-#define IMTET_BENCH_NEED_H
+#pragma once
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,5 +14,3 @@ static inline void need(Status status, const Err *why)
     fprintf(stderr, "imtet-bench: %s: %s\n", status_words(status), why->text);
     abort();
 }
-
-#endif

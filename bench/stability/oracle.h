@@ -5,8 +5,7 @@
  * Runge-Kutta of order 4 on short fixed steps, events by bisection of the step, the first step of a contact in
  * t = tc + s^2. Slow, and simple enough to be verified by reading.
  * Threads  no state */
-#ifndef IMTET_BENCH_ORACLE_H
-#define IMTET_BENCH_ORACLE_H
+#pragma once
 
 #include "bench/stability/bob.h"
 
@@ -24,5 +23,3 @@ typedef struct {
 /* free_step, contact_step [s]: lengths of the steps. */
 void oracle_run(Oracle *o, const Bob *bob, const Contact *contact, const Motion *motion, double duration,
                 double free_step, double contact_step);
-
-#endif

@@ -4,8 +4,7 @@
  * no answer in time a refusal. A line per cell goes to standard output.
  *
  * Errors  an engine answers wrongly in silence, or the engine `fast` does anything but hold */
-#ifndef IMTET_BENCH_STABILITY_H
-#define IMTET_BENCH_STABILITY_H
+#pragma once
 
 #include "bench/stability/trial.h"
 
@@ -17,5 +16,3 @@ typedef struct {
 } StabilityPlan;
 
 Status stability(const StabilityPlan *plan, Err *err);
-
-#endif

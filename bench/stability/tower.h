@@ -1,6 +1,5 @@
 /* bench/stability/tower.h -- the 20-storey tower under a short record that shakes it at once. */
-#ifndef IMTET_BENCH_TOWER_H
-#define IMTET_BENCH_TOWER_H
+#pragma once
 
 #include "bench/engines/engines.h"
 #include "bench/stability/need.h"
@@ -22,5 +21,3 @@ void bench_tower_set_gaps(Tower *t, double gap);
 
 /* One run: scene, worker, sim_run. A Status that is not OK becomes an outcome with a reason. */
 SimResult bench_tower_run(const Tower *t, SceneKind kind);
-
-#endif

@@ -8,8 +8,7 @@
  *
  * A case calls trial_compare (and its kin) once per figure; the worst verdict stays, and of equal verdicts the figure
  * nearest to its bound. */
-#ifndef IMTET_BENCH_TRIAL_H
-#define IMTET_BENCH_TRIAL_H
+#pragma once
 
 #include "bench/stability/oracle.h"
 
@@ -70,5 +69,3 @@ __attribute__((format(printf, 2, 3))) void trial_remark(Trial *t, const char *te
 /* Both accuracies, one after the other. */
 #define TRIAL_EACH_ACCURACY(t)                                                                                         \
     for (int each_ = 0; each_ < 2 && ((t)->accuracy = each_ ? ACCURACY_STANDARD : ACCURACY_FINE, 1); each_++)
-
-#endif
