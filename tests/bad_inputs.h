@@ -1,7 +1,6 @@
 /* tests/bad_inputs.h -- folders of inputs that are each wrong in one way. The first line of every file says what the
  * message must hold: "; wants: TEXT" or "# wants: TEXT". */
-#ifndef IMTET_TESTS_BAD_INPUTS_H
-#define IMTET_TESTS_BAD_INPUTS_H
+#pragma once
 
 #include "check.h"
 
@@ -40,5 +39,3 @@ static inline int all_refused(const char *folder, ReadFn read)
     closedir(d);
     return n;
 }
-
-#endif

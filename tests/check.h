@@ -1,6 +1,5 @@
 /* tests/check.h -- comparisons that cmocka leaves to us. */
-#ifndef IMTET_TESTS_CHECK_H
-#define IMTET_TESTS_CHECK_H
+#pragma once
 
 #include "base/status.h" /* before cmocka.h, which defines a macro fail() */
 
@@ -113,6 +112,32 @@ static inline void comparison_failed(const char *what, double left, double right
 #define assert_at_most(left, right)     CHECK_COMPARISON(left, <=, right)
 #define assert_same_number(left, right) CHECK_COMPARISON(left, ==, right)
 
+/* Each of the words stands in the text; those behind a ! do not. */
+static inline void check_says(const char *text, const char *const words[], const char *file, int line)
+{
+    for (; *words; words++)
+        if ((strstr(text, *words + (**words == '!')) != NULL) == (**words == '!')) {
+            print_error("wanted '%s' in: %.2000s\n", *words, text);
+            _fail(file, line);
+        }
+}
+#define assert_words(text, ...) check_says(text, (const char *const[]){__VA_ARGS__, NULL}, __FILE__, __LINE__)
+
+/* A call that fills err ends with the status, and err has the words. */
+static inline void check_refused(Status status, Status wanted, const char *words, const char *file, int line)
+{
+    if (status != wanted || !strstr(err.text, words)) {
+        print_error("%s (wanted %s): '%s'\n  wanted: '%s'\n", status_words(status), status_words(wanted), err.text,
+                    words);
+        _fail(file, line);
+    }
+}
+#define assert_refused(call, status, words)                                                                            \
+    do {                                                                                                               \
+        err = (Err){0};                                                                                                \
+        check_refused(call, status, words, __FILE__, __LINE__);                                                        \
+    } while (0)
+
 static inline double now_s(void)
 {
     struct timespec t;
@@ -133,5 +158,3 @@ static inline void check_ok(Status status, const Err *why, const char *what, con
     }
 }
 #define CHECK_OK(status, why) check_ok(status, why, #status, __FILE__, __LINE__)
-
-#endif

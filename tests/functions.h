@@ -1,15 +1,23 @@
 /* tests/functions.h -- a problem whose objectives and limits are a function of the test's own. */
-#ifndef IMTET_TESTS_FUNCTIONS_H
-#define IMTET_TESTS_FUNCTIONS_H
+#pragma once
 
 #include "check.h"
 
 #include "evaluate/queue.h"
 #include "evaluate/tasks.h"
 
-/* n designs X (n, n_var), of which draws[i] evaluations were made before; minimised F (n, n_obj), G (n, n_con), ok (n). */
-typedef Status (*FunctionFn)(size_t n, const double X[], const size_t draws[], double F[], double G[],
-                             unsigned char ok[], void *user, Err *err);
+/* One evaluation of design x (n_var), of which `draw` were made before. The function sets f (n_obj), which is minimised,
+ * g (n_con) and, where it fails or the search shall end, ok and status. */
+typedef struct {
+    const double *x;
+    size_t draw;
+    double *f, *g;
+    int ok;        /* 1 before */
+    Status status; /* STATUS_OK before */
+    Err *why;
+} FunctionCall;
+
+typedef void (*FunctionFn)(FunctionCall *q, void *user);
 
 typedef struct {
     FunctionFn evaluate;
@@ -21,12 +29,12 @@ typedef struct {
 static inline Status function_simulate(void *self, size_t worker, const Task *task, Err *why)
 {
     const Function *function = self;
-    double *f = task->result, *g = f + function->n_obj;
-    unsigned char ok = 0;
+    double *f = task->result;
+    FunctionCall q = {task->x, task->repeat, f, f + function->n_obj, 1, STATUS_OK, why};
     (void)worker;
-    const Status status = function->evaluate(1, task->x, &task->repeat, f, g, &ok, function->user, why);
-    g[function->n_con] = ok;
-    return status;
+    function->evaluate(&q, function->user);
+    q.g[function->n_con] = q.ok;
+    return q.status;
 }
 
 static inline void function_combine(const Problem *p, size_t n, const void *parts, Evaluation *e)
@@ -89,5 +97,3 @@ static inline EvaluationTable evaluations_of(const Problem *p, long first_id, si
     }
     return t;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* tests/one_scene.h -- a scene that is made for one simulation, and the tower of 20 floors for several. */
-#ifndef IMTET_TESTS_ONE_SCENE_H
-#define IMTET_TESTS_ONE_SCENE_H
+#pragma once
 
 #include "check.h"
 #include "scene_options.h"
@@ -62,5 +61,3 @@ static inline void tower_close(Tower *t)
     scene_free(t->scene);
     motion_free(&t->motion);
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* tests/program.h -- runs $IMTET in the repository's root, as a person would, and reads what it says. The files of a
  * test program lie in a folder of its own, made by make_place and removed by clear_place. */
-#ifndef IMTET_TESTS_PROGRAM_H
-#define IMTET_TESTS_PROGRAM_H
+#pragma once
 
 #include "check.h"
 
@@ -268,5 +267,3 @@ static inline int signal_child_of(pid_t parent, const char *signal)
              (int)parent);
     return system(command) == 0;
 }
-
-#endif

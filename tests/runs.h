@@ -1,6 +1,5 @@
 /* tests/runs.h -- small runs for tests of the run store, in the test's own folder or as a process of their own. */
-#ifndef IMTET_TESTS_RUNS_H
-#define IMTET_TESTS_RUNS_H
+#pragma once
 
 #include "program.h"
 
@@ -151,5 +150,3 @@ static inline int prepare(void **state)
     omp_set_num_threads(1);
     return make_place(state);
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* tests/scene_options.h -- the options of a scene: the defaults, and those of the paper's study (configs/kobe.ini). */
-#ifndef IMTET_TESTS_SCENE_OPTIONS_H
-#define IMTET_TESTS_SCENE_OPTIONS_H
+#pragma once
 
 #include "evaluate/scenario.h"
 #include "motion/motion_scale.h"
@@ -86,5 +85,3 @@ static inline Status make_core_of(CoreBeam *core, const SceneOptions *s, int n, 
         storey_m[j] = list_at(&s->building.heights_m, j);
     return core_beam_make(core, &s->core, n, storey_m, t_base, t_top, why);
 }
-
-#endif

@@ -176,10 +176,8 @@ TEST(the_table_of_the_promise_has_a_row_for_every_accuracy)
     unlink(path);
     rmdir(folder);
     print_message("%s", page);
-    assert_non_null(strstr(page, "\nlog-uniform,\"coarse\",j1,1,1,"));
-    assert_non_null(strstr(page, "\nwide,\"standard\",j3,1,1,"));
-    assert_non_null(strstr(page, "\nthree floors,\"true / estimated error\",edcs_pct,1,1,"));
-    assert_non_null(strstr(page, "\ncvode,\"fine\",share_points,1,1,"));
+    assert_words(page, "\nlog-uniform,\"coarse\",j1,1,1,", "\nwide,\"standard\",j3,1,1,",
+                 "\nthree floors,\"true / estimated error\",edcs_pct,1,1,", "\ncvode,\"fine\",share_points,1,1,");
     free(page);
     motion_free(&g.m);
 }

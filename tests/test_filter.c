@@ -112,8 +112,7 @@ TEST(a_cutoff_beyond_half_the_sampling_rate_is_refused)
     static const double BAD[] = {0, -1, 50, 80, NAN, INFINITY};
     Filter f;
     for (size_t i = 0; i < sizeof BAD / sizeof BAD[0]; i++) {
-        assert_int_equal(filter_butterworth(&f, FILTER_LOW_PASS, BAD[i], 0.01, &err), STATUS_BAD_DATA);
-        assert_non_null(strstr(err.text, "50 Hz"));
+        assert_refused(filter_butterworth(&f, FILTER_LOW_PASS, BAD[i], 0.01, &err), STATUS_BAD_DATA, "50 Hz");
     }
 }
 

@@ -130,8 +130,7 @@ TEST(the_table_and_the_picture_show_the_three_scenes)
     if (has_browser()) {
         free(output_of(RANGE "--svg @/ida.svg"));
         FREED char *svg = read_in_place("ida.svg");
-        assert_non_null(strstr(svg, "rigidly connected: median, 16 and 84 %"));
-        assert_non_null(strstr(svg, "</svg>"));
+        assert_words(svg, "rigidly connected: median, 16 and 84 %", "</svg>");
     }
 }
 
@@ -154,12 +153,10 @@ TEST(names_of_records_are_whole_and_rows_go_to_csv)
     write_in_place(name, "t,a_m_s2\n0,0\n0.02,1\n0.04,-2\n0.06,1\n0.08,0.5\n");
     write_in_place("many/b.csv", "t,a_m_s2\n0,0\n0.02,1\n0.04,oops\n");
     FREED char *table = output_of("evaluate @/run --design knee --record @/many");
-    assert_non_null(strstr(table, "a_record_with_a_name_that_is_much_longer_than_forty_characters.csv  no core"));
-    assert_non_null(strstr(table, "not read: "));
+    assert_words(table, "a_record_with_a_name_that_is_much_longer_than_forty_characters.csv  no core", "not read: ");
     free(output_of("evaluate @/run --design knee --record @/many --csv @/rows.csv"));
     FREED char *rows = read_in_place("rows.csv");
-    assert_non_null(strstr(rows, NAME));
-    assert_non_null(strstr(rows, ",no_core,ok,"));
+    assert_words(rows, NAME, ",no_core,ok,");
 }
 
 /* Of the only record, in the row of the design; the other scenes have none. */

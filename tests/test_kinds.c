@@ -222,8 +222,7 @@ TEST(devices_have_the_same_bytes_at_any_number_of_threads_and_after_a_kill)
     FREED char *all = all_of("whole"), *two = all_of("two"), *cut = all_of("cut");
     assert_string_equal(all, two);
     assert_string_equal(all, cut);
-    assert_non_null(strstr(all, ",link,link,none,"));
-    assert_non_null(strstr(all, ",none,none,tuned_mass,"));
+    assert_words(all, ",link,link,none,", ",none,none,tuned_mass,");
 }
 
 TEST(workers_and_files_have_the_words_and_a_start_is_read_from_them)
@@ -233,8 +232,7 @@ TEST(workers_and_files_have_the_words_and_a_start_is_read_from_them)
                                 "[search]\ninitial = 6\npopulation = 4\nmax_evals = 12\nthreads = 1\n");
     free(output_of("optimize @/words.ini --out @/words"));
     char path[PATH_MAX], *front = read_in_place("words/front.csv"), *all = json_export(path_of("words", path));
-    assert_non_null(strstr(front, ",steel,0,1,0\n"));
-    assert_non_null(strstr(front, ",oak,0,0,10\n"));
+    assert_words(front, ",steel,0,1,0\n", ",oak,0,0,10\n");
     assert_non_null(strstr(all, "\"x\":[\"oak\","));
     free(front);
     free(all);
@@ -274,8 +272,7 @@ TEST(kinds_that_make_no_sense_are_refused_by_their_key)
             bounds[j] = atof(BAD[i].lower);
             bounds[3 + j] = atof(BAD[i].upper);
         }
-        assert_int_equal(kinds_read(BAD[i].kinds, 3, kind, bounds, &steps, &err), STATUS_BAD_DATA);
-        assert_non_null(strstr(err.text, BAD[i].message));
+        assert_refused(kinds_read(BAD[i].kinds, 3, kind, bounds, &steps, &err), STATUS_BAD_DATA, BAD[i].message);
     }
 }
 

@@ -196,7 +196,7 @@ TEST(a_design_with_an_answer_that_failed_is_no_longer_used)
 
 /* -- search -------------------------------------------------------------------------------------------------------- */
 
-enum { VAR = 5, OBJ = 2, ROWS_MAX = 600, GENERATIONS_MAX = 200 };
+enum { VAR = 5, OBJ = 2 };
 
 /* Convex front f1 + root... of two distances: minima of (x - 0)^2 and (x - 1)^2 along the diagonal. Additive noise. */
 typedef struct {
@@ -216,25 +216,17 @@ static void exact(const double x[], double f[])
 }
 
 /* The draw is named by the design and how often it was asked for, so that a search that goes on gets the same. */
-static Status evaluate(size_t n, const double X[], const size_t draws[], double F[], double G[], unsigned char ok[],
-                       void *user, Err *why)
+static void evaluate(FunctionCall *q, void *user)
 {
     World *w = user;
-    (void)G;
-    (void)why;
-    for (size_t i = 0; i < n; i++) {
-        const double *x = X + i * VAR;
-        uint64_t bits;
-        memcpy(&bits, x, sizeof bits);
-        Random r = random_stream((uint32_t)(bits ^ bits >> 32), RANDOM_TEST, 3, (uint32_t)draws[i]);
-        exact(x, F + i * OBJ);
-        for (size_t k = 0; k < OBJ; k++)
-            F[i * OBJ + k] += w->noise * random_normal(&r);
-        ok[i] = 1;
-        w->n_repeated += draws[i] > 0;
-    }
-    w->n_asked += n;
-    return STATUS_OK;
+    uint64_t bits;
+    memcpy(&bits, q->x, sizeof bits);
+    Random r = random_stream((uint32_t)(bits ^ bits >> 32), RANDOM_TEST, 3, (uint32_t)q->draw);
+    exact(q->x, q->f);
+    for (size_t k = 0; k < OBJ; k++)
+        q->f[k] += w->noise * random_normal(&r);
+    w->n_repeated += q->draw > 0;
+    w->n_asked++;
 }
 
 static World world(double noise, int is_noisy)
@@ -265,47 +257,11 @@ static SearchConfig config(uint32_t seed, double repeats)
     return c;
 }
 
-typedef struct {
-    size_t n, n_front, n_repeats;
-    double X[ROWS_MAX * VAR], Y[ROWS_MAX * OBJ], F[ROWS_MAX * OBJ];
-    unsigned char ok[ROWS_MAX], kind[ROWS_MAX], on_front[ROWS_MAX];
-    size_t replicates[ROWS_MAX], generation[ROWS_MAX];
-    Moments moments;
-} Seen;
-
-static int observe(const SearchView *v, const SearchTime *time, void *user)
-{
-    Seen *s = user;
-    (void)time;
-    assert_true(v->all->n <= ROWS_MAX && s->moments.n < GENERATIONS_MAX);
-    s->n = v->all->n;
-    s->n_front = v->all->n_front;
-    s->n_repeats = v->all->n_replicates;
-    memcpy(s->X, v->all->X, v->all->n * VAR * sizeof *v->all->X);
-    memcpy(s->Y, v->all->Y, v->all->n * OBJ * sizeof *v->all->Y);
-    memcpy(s->F, v->all->F, v->all->n * OBJ * sizeof *v->all->F);
-    memcpy(s->ok, v->all->ok, v->all->n);
-    memcpy(s->kind, v->all->kind, v->all->n);
-    memcpy(s->on_front, v->all->on_front, v->all->n);
-    memcpy(s->replicates, v->all->replicates, v->all->n * sizeof *v->all->replicates);
-    memcpy(s->generation, v->all->generation, v->all->n * sizeof *v->all->generation);
-    moments_note(&s->moments, v);
-    return 0;
-}
-
-static void forget(Seen *s)
-{
-    moments_free(&s->moments);
-    memset(s, 0, sizeof *s);
-}
-
 static void run(World *w, const SearchConfig *c, const SearchStart *start, Seen *seen)
 {
-    StopReason reason;
-    memset(seen, 0, sizeof *seen);
     settle(w);
-    CHECK_OK(search_run(&w->problem, c, start, observe, seen, &reason, &err), &err);
-    assert_int_equal(reason, STOP_EVALUATIONS);
+    run_noting(&w->problem, c, start, seen);
+    assert_int_equal(seen->reason, STOP_EVALUATIONS);
 }
 
 static Seen seen, again;
@@ -327,7 +283,6 @@ TEST(repeats_are_simulations_of_the_budget_and_no_more_than_their_share)
     assert_at_most((double)repeats, 0.4 * (200 - 18 * VAR));
     assert_less(0.8 * 0.4 * (200 - 18 * VAR), repeats); /* those that the last batch brings with it are not made */
     assert_true(most > 1 && most <= 4);
-    forget(&seen);
 }
 
 TEST(what_answers_the_same_each_time_is_soon_left_alone)
@@ -337,12 +292,10 @@ TEST(what_answers_the_same_each_time_is_soon_left_alone)
     run(&w, &c, NULL, &seen);
     assert_int_equal(seen.n, 200);
     assert_in_range(seen.n_repeats, 8, 8 + 0.4 * (AHEAD + 12)); /* those under way when it is noticed */
-    forget(&seen);
     run(&plain, &c, NULL, &seen);
     assert_int_equal(plain.n_repeated, 0);
     for (size_t i = 0; i < seen.n * OBJ; i++)
         assert_same_number(seen.F[i], seen.Y[i]);
-    forget(&seen);
 }
 
 /* Mean of reported less true objectives over the front, in standard deviations of an answer. */
@@ -369,10 +322,8 @@ TEST(repeats_take_most_of_the_optimism_out_of_the_front)
         const SearchConfig once = config(seed, 0.0), more = config(seed, 0.4);
         run(&w, &once, NULL, &seen);
         believed += optimism(&seen, w.noise) / 4;
-        forget(&seen);
         run(&w, &more, NULL, &seen);
         tried += optimism(&seen, w.noise) / 4;
-        forget(&seen);
     }
     if (!(believed > 0.5 && fabs(tried) < 0.5 * believed))
         print_error("optimism: %g standard deviations without repeats, %g with\n", believed, tried);
@@ -397,9 +348,7 @@ TEST(a_noisy_search_goes_on_from_any_generation_to_the_same_bytes)
         assert_memory_equal(again.F, seen.F, seen.n * OBJ * sizeof *seen.F);
         assert_memory_equal(again.on_front, seen.on_front, seen.n);
         assert_memory_equal(again.kind, seen.kind, seen.n);
-        forget(&again);
     }
-    forget(&seen);
 }
 
 SUITE(NULL, NULL)

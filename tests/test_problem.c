@@ -305,8 +305,7 @@ TEST(words_of_the_command_may_be_quoted_and_no_shell_reads_them)
         assert_int_equal(a.answers[i].outcome, OUTCOME_OK);
     Problem p;
     ProblemOptions options = command_of("sh 'tests", 1, 3);
-    assert_int_equal(external_open(&p, &options, 1, &err), STATUS_BAD_DATA);
-    assert_non_null(strstr(err.text, "quote"));
+    assert_refused(external_open(&p, &options, 1, &err), STATUS_BAD_DATA, "quote");
     options = command_of("   ", 1, 3);
     assert_int_equal(external_open(&p, &options, 1, &err), STATUS_BAD_DATA);
 }
@@ -398,8 +397,7 @@ TEST(a_command_that_does_not_exist_ends_the_search_by_name)
     const ProblemOptions options = command_of("no-such-simulator --fast", 1, 3);
     CHECK_OK(external_open(&p, &options, 1, &err), &err);
     CHECK_OK(queue_open(&q, &p, &err), &err);
-    assert_int_equal(queue_evaluate(q, 1, x, NULL, f, NULL, &ok, &err), STATUS_BAD_DATA);
-    assert_non_null(strstr(err.text, "no-such-simulator"));
+    assert_refused(queue_evaluate(q, 1, x, NULL, f, NULL, &ok, &err), STATUS_BAD_DATA, "no-such-simulator");
     queue_close(q);
 }
 

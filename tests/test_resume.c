@@ -4,31 +4,18 @@
 #include <omp.h>
 
 #include "base/pack.h"
-#include "study/search_loop.h"
 #include "bench/textbook.h"
 #include "functions.h"
 #include "searches.h"
 
-enum { VAR_MAX = 22, OBJ_MAX = 7, ROWS_MAX = 300, GENERATIONS_MAX = 80 };
-
 typedef struct {
     Problem problem;
     Function function;
-    double lower[VAR_MAX], upper[VAR_MAX];
+    double lower[SEEN_VAR], upper[SEEN_VAR];
     size_t fail_every; /* every so many-th design fails, told by its bytes; 0: none, 1: all */
     double noise;      /* [-] of the answers, told by the design's bytes too */
     double pause_s;    /* that an answer takes */
 } World;
-
-/* Everything simulated, and the state at the end of every generation. */
-typedef struct {
-    size_t n, first_generation, last_generation;
-    double X[ROWS_MAX * VAR_MAX], F[ROWS_MAX * OBJ_MAX], G[ROWS_MAX];
-    unsigned char ok[ROWS_MAX], on_front[ROWS_MAX], kind[ROWS_MAX];
-    size_t generation[ROWS_MAX];
-    Moments moments;
-    StopReason reason;
-} Seen;
 
 static int fails(const World *w, const double x[])
 {
@@ -37,24 +24,17 @@ static int fails(const World *w, const double x[])
     return w->fail_every > 0 && (bits >> 20) % w->fail_every == 0;
 }
 
-static Status evaluate(size_t n, const double X[], const size_t draws[], double F[], double G[], unsigned char ok[],
-                       void *user, Err *why)
+static void evaluate(FunctionCall *q, void *user)
 {
-    (void)draws;
-    (void)why;
     const World *w = user;
-    for (size_t i = 0; i < n; i++) {
-        const double *x = X + i * w->problem.n_var;
-        textbook_dtlz2(w->problem.n_var, w->problem.n_obj, x, F + i * w->problem.n_obj);
-        for (size_t k = 0; w->noise > 0.0 && k < w->problem.n_obj; k++)
-            F[i * w->problem.n_obj + k] += w->noise * sin(1e6 * x[0] + 1e7 * x[1] + (double)k);
-        ok[i] = (unsigned char)!fails(w, x);
-        if (w->pause_s > 0.0)
-            nanosleep(&(struct timespec){0, (long)(1e9 * w->pause_s)}, NULL);
-        if (w->problem.n_con > 0)
-            G[i] = 0.3 - x[0];
-    }
-    return STATUS_OK;
+    textbook_dtlz2(w->problem.n_var, w->problem.n_obj, q->x, q->f);
+    for (size_t k = 0; w->noise > 0.0 && k < w->problem.n_obj; k++)
+        q->f[k] += w->noise * sin(1e6 * q->x[0] + 1e7 * q->x[1] + (double)k);
+    q->ok = !fails(w, q->x);
+    if (w->pause_s > 0.0)
+        rest(w->pause_s);
+    if (w->problem.n_con > 0)
+        q->g[0] = 0.3 - q->x[0];
 }
 
 static void world(World *w, size_t n_var, size_t n_obj, size_t n_con)
@@ -73,32 +53,6 @@ static SearchConfig config(size_t initial, size_t max_evals)
     return c;
 }
 
-static int observe(const SearchView *v, const SearchTime *time, void *user)
-{
-    Seen *s = user;
-    (void)time;
-    if (s->moments.n == 0)
-        s->first_generation = v->generation;
-    assert_true(v->all->n <= ROWS_MAX && s->moments.n < GENERATIONS_MAX);
-    s->n = v->all->n;
-    s->last_generation = v->generation;
-    rows_note(v->all, s->X, s->F, s->G, s->ok, s->kind, s->on_front, s->generation);
-    moments_note(&s->moments, v);
-    return 0;
-}
-
-static void forget(Seen *s)
-{
-    moments_free(&s->moments);
-    memset(s, 0, sizeof *s);
-}
-
-static void run(World *w, const SearchConfig *c, const SearchStart *start, Seen *seen)
-{
-    memset(seen, 0, sizeof *seen);
-    CHECK_OK(search_run(&w->problem, c, start, observe, seen, &seen->reason, &err), &err);
-}
-
 static void assert_same_search(const World *w, const Seen *a, const Seen *b)
 {
     const Problem *p = &w->problem;
@@ -106,7 +60,7 @@ static void assert_same_search(const World *w, const Seen *a, const Seen *b)
     assert_int_equal(a->reason, b->reason);
     assert_int_equal(a->last_generation, b->last_generation);
     assert_memory_equal(a->X, b->X, a->n * p->n_var * sizeof *a->X);
-    assert_memory_equal(a->F, b->F, a->n * p->n_obj * sizeof *a->F);
+    assert_memory_equal(a->Y, b->Y, a->n * p->n_obj * sizeof *a->Y);
     assert_memory_equal(a->ok, b->ok, a->n);
     assert_memory_equal(a->kind, b->kind, a->n);
     assert_memory_equal(a->on_front, b->on_front, a->n);
@@ -124,23 +78,21 @@ static SearchStart moment(const Seen *s, size_t k)
 {
     const size_t n = s->moments.rows[k];
     evaluation_table_free(&before);
-    before = evaluations_of(&here.problem, 1, n, s->X, s->F, s->G, s->ok, s->kind, s->generation);
+    before = evaluations_of(&here.problem, 1, n, s->X, s->Y, s->G, s->ok, s->kind, s->generation);
     return (SearchStart){n, 0, before.row, s->moments.state[k], s->moments.n_state[k], NULL, NULL};
 }
 
 /* From every `step`-th moment but the last. */
 static void check_every_moment(const SearchConfig *c, size_t step)
 {
-    run(&here, c, NULL, &whole);
+    run_noting(&here.problem, c, NULL, &whole);
     assert_less(step + 1, whole.moments.n);
     for (size_t k = 0; k + 1 < whole.moments.n; k += step) {
         const SearchStart start = moment(&whole, k);
-        run(&here, c, &start, &resumed);
+        run_noting(&here.problem, c, &start, &resumed);
         assert_int_equal(resumed.first_generation, k + 1);
         assert_same_search(&here, &whole, &resumed);
-        forget(&resumed);
     }
-    forget(&whole);
 }
 
 TEST(a_search_goes_on_from_any_generation_as_if_it_had_never_stopped)
@@ -203,14 +155,12 @@ TEST(the_number_of_threads_may_change_in_between)
     const SearchConfig c = config(20, 48);
     world(&here, 6, 3, 0);
     omp_set_num_threads(1);
-    run(&here, &c, NULL, &whole);
+    run_noting(&here.problem, &c, NULL, &whole);
     omp_set_num_threads(3);
     const SearchStart start = moment(&whole, whole.moments.n / 2);
-    run(&here, &c, &start, &resumed);
+    run_noting(&here.problem, &c, &start, &resumed);
     omp_set_num_threads(threads);
     assert_same_search(&here, &whole, &resumed);
-    forget(&resumed);
-    forget(&whole);
 }
 
 /* With the same plan the shorter search is the beginning of the longer one. */
@@ -219,41 +169,37 @@ TEST(more_simulations_than_planned_go_on_where_the_plan_ended)
     world(&here, 6, 3, 0);
     SearchConfig c = config(0, 40);
     c.planned_evals = 40;
-    run(&here, &c, NULL, &resumed);
+    run_noting(&here.problem, &c, NULL, &resumed);
     assert_int_equal(resumed.reason, STOP_EVALUATIONS);
     c.max_evals = 64;
-    run(&here, &c, NULL, &whole);
+    run_noting(&here.problem, &c, NULL, &whole);
     assert_int_equal(whole.n, 64);
     assert_memory_equal(resumed.X, whole.X, resumed.n * here.problem.n_var * sizeof *resumed.X);
 
     static Seen longer;
     const SearchStart start = moment(&resumed, resumed.moments.n - 1);
-    run(&here, &c, &start, &longer);
+    run_noting(&here.problem, &c, &start, &longer);
     assert_int_equal(longer.n, 64);
     assert_memory_equal(resumed.X, longer.X, resumed.n * here.problem.n_var * sizeof *resumed.X);
-    forget(&longer);
-    forget(&resumed);
-    forget(&whole);
 }
 
 TEST(a_search_at_its_limit_simulates_nothing_more)
 {
     world(&here, 6, 3, 0);
     const SearchConfig c = config(20, 32);
-    run(&here, &c, NULL, &whole);
+    run_noting(&here.problem, &c, NULL, &whole);
     const SearchStart end = moment(&whole, whole.moments.n - 1);
-    run(&here, &c, &end, &resumed);
+    run_noting(&here.problem, &c, &end, &resumed);
     assert_int_equal(resumed.reason, STOP_EVALUATIONS);
     assert_int_equal(resumed.moments.n, 0);
-    forget(&whole);
 }
 
 static void refuse(const SearchConfig *c, const SearchStart *start)
 {
     err = (Err){0};
     StopReason reason;
-    assert_int_equal(search_run(&here.problem, c, start, observe, &resumed, &reason, &err), STATUS_BAD_DATA);
-    assert_non_null(strstr(err.text, "does not fit"));
+    assert_refused(search_run(&here.problem, c, start, moment_note, &resumed, &reason, &err), STATUS_BAD_DATA,
+                   "does not fit");
     assert_int_equal(resumed.moments.n, 0);
 }
 
@@ -261,8 +207,8 @@ TEST(a_state_that_is_cut_short_or_of_another_search_is_refused)
 {
     world(&here, 6, 3, 0);
     SearchConfig c = config(20, 32);
-    run(&here, &c, NULL, &whole);
-    memset(&resumed, 0, sizeof resumed);
+    run_noting(&here.problem, &c, NULL, &whole);
+    moments_free(&resumed.moments);
     SearchStart start = moment(&whole, 1);
     for (size_t n = 0; n < start.n_state; n += 1 + n / 16) {
         SearchStart cut = start;
@@ -274,7 +220,6 @@ TEST(a_state_that_is_cut_short_or_of_another_search_is_refused)
     start.n++;
     c.population++;
     refuse(&c, &start);
-    forget(&whole);
 }
 
 TEST(a_search_that_converges_stops_at_the_same_place_wherever_it_was_resumed)
@@ -283,17 +228,15 @@ TEST(a_search_that_converges_stops_at_the_same_place_wherever_it_was_resumed)
     SearchConfig c = config(20, 290);
     c.stop_after = 100;
     check_every_moment(&c, 5);
-    run(&here, &c, NULL, &whole);
+    run_noting(&here.problem, &c, NULL, &whole);
     assert_int_equal(whole.reason, STOP_CONVERGED);
     const SearchStart end = moment(&whole, whole.moments.n - 1);
-    run(&here, &c, &end, &resumed);
+    run_noting(&here.problem, &c, &end, &resumed);
     assert_int_equal(resumed.reason, STOP_CONVERGED);
     assert_int_equal(resumed.moments.n, 0);
     c.stop_after = 0; /* it goes on, as if it had never been asked to stop */
-    run(&here, &c, &end, &resumed);
+    run_noting(&here.problem, &c, &end, &resumed);
     assert_int_equal(resumed.reason, STOP_EVALUATIONS);
-    forget(&resumed);
-    forget(&whole);
 }
 
 /* Every eight bytes of it in turn, what is known of the designs that it waits for too. */
@@ -301,8 +244,8 @@ static void check_this_is_refused_everywhere(double number)
 {
     world(&here, 3, 2, 0);
     const SearchConfig c = config(12, 44);
-    run(&here, &c, NULL, &whole);
-    memset(&resumed, 0, sizeof resumed);
+    run_noting(&here.problem, &c, NULL, &whole);
+    moments_free(&resumed.moments);
     SearchStart start = moment(&whole, whole.moments.n / 2);
     FREED unsigned char *forged = malloc(start.n_state);
     assert_non_null(forged);
@@ -313,7 +256,6 @@ static void check_this_is_refused_everywhere(double number)
         other.state = forged;
         refuse(&c, &other);
     }
-    forget(&whole);
 }
 
 TEST(a_state_with_a_number_anywhere_that_is_not_finite_is_refused)

@@ -205,12 +205,11 @@ TEST(a_folder_without_a_run_or_with_too_long_a_name_is_told)
 {
     char path[PATH_MAX], name[PATH_MAX + 64];
     Run run;
-    assert_int_equal(run_read(&run, path_of("nothing", path), &err), STATUS_MISSING);
-    assert_non_null(strstr(err.text, "nothing: there is no such file or folder"));
+    assert_refused(run_read(&run, path_of("nothing", path), &err), STATUS_MISSING,
+                   "nothing: there is no such file or folder");
     memset(name, 'a', sizeof name);
     name[sizeof name - 1] = 0;
-    assert_int_equal(run_read(&run, name, &err), STATUS_MISSING);
-    assert_non_null(strstr(err.text, "holds no run"));
+    assert_refused(run_read(&run, name, &err), STATUS_MISSING, "holds no run");
     assert_false(run_is_there(name));
 }
 
@@ -261,8 +260,7 @@ TEST(a_lock_names_its_holder_and_who_cannot_have_one_is_told_why)
     assert_false(folder_is_held(path, &holder));
     assert_int_equal(unlink(path_of("held/lock", lock)), 0);
     assert_int_equal(symlink("/dev/full", lock), 0);
-    assert_int_equal(folder_take(&first, path, 0, &err), STATUS_IO);
-    assert_non_null(strstr(err.text, "lock: cannot be written"));
+    assert_refused(folder_take(&first, path, 0, &err), STATUS_IO, "lock: cannot be written");
 }
 
 /* As a killed process that the system still tears down. */

@@ -124,7 +124,7 @@ typedef struct {
     unsigned char kind[ROWS_MAX], on_front[ROWS_MAX];
     size_t generation[ROWS_MAX];
     double Y[ROWS_MAX * OBJ];
-} Seen;
+} Screened;
 
 /* No view shows a screened design on the front, and the front is what is nondominated among the other rows. */
 static void check_front(const SearchView *v)
@@ -140,7 +140,7 @@ static void check_front(const SearchView *v)
 
 static int observe(const SearchView *v, const SearchTime *time, void *user)
 {
-    Seen *s = user;
+    Screened *s = user;
     (void)time;
     assert_at_most(v->all->n, ROWS_MAX);
     check_front(v);
@@ -161,7 +161,7 @@ static int observe(const SearchView *v, const SearchTime *time, void *user)
     return 0;
 }
 
-static void run(World *w, Seen *s, const SearchStart *start)
+static void run(World *w, Screened *s, const SearchStart *start)
 {
     const SearchConfig config = config_of();
     StopReason reason;
@@ -171,9 +171,9 @@ static void run(World *w, Seen *s, const SearchStart *start)
 }
 
 static World world, other_world;
-static Seen seen, other;
+static Screened seen, other;
 
-static void forget(World *w, Seen *s)
+static void forget(World *w, Screened *s)
 {
     moments_free(&s->moments);
     evaluation_table_free(&w->done);
@@ -286,7 +286,7 @@ TEST(resumed_anywhere_it_makes_the_same_bytes)
 }
 
 /* Row i is one of the sample, and a later one has all of its simulations. */
-static int is_finished(const World *w, const Seen *s, size_t i)
+static int is_finished(const World *w, const Screened *s, size_t i)
 {
     const size_t n = w->done.n_var;
     for (size_t j = i + 1; j < s->n; j++)

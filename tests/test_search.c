@@ -9,46 +9,20 @@
 #include "base/hypervolume.h"
 #include "moga/constants.h"
 #include "moga/convergence.h"
-#include "study/search_loop.h"
+#include "bench/textbook.h"
 #include "moga/surrogate.h"
 #include "moga/variation.h"
-
-enum { VAR_MAX = 22, OBJ_MAX = 7, ROWS_MAX = 600 };
 
 /* A textbook problem with everything that a test wants to see or to break. */
 typedef struct {
     Problem problem;
     Function function;
-    double lower[VAR_MAX], upper[VAR_MAX];
+    double lower[SEEN_VAR], upper[SEEN_VAR];
     int fail_share_percent, all_alike_noise, waves;
     int has_no_bound; /* the constraint, where x1 > 0.9 */
     size_t n_rows, n_repeated;
-    double seen[ROWS_MAX][VAR_MAX];
+    double seen[SEEN_ROWS][SEEN_VAR];
 } World;
-
-/* The last view of a search, copied out. */
-typedef struct {
-    size_t n, n_front, n_failed, views, stop_at_view, last_generation;
-    double X[ROWS_MAX * VAR_MAX], F[ROWS_MAX * OBJ_MAX], G[ROWS_MAX], error;
-    unsigned char ok[ROWS_MAX], on_front[ROWS_MAX], kind[ROWS_MAX];
-    size_t generation[ROWS_MAX];
-} Seen;
-
-/* Deb, Thiele, Laumanns and Zumbler, CEC 2002: the front is the positive part of the unit sphere,
- * sum f^2 = (1 + g)^2, g = sum over the last variables of (x - 1/2)^2. */
-static void dtlz2(size_t n_var, size_t m, const double x[], double f[])
-{
-    double g = 0.0;
-    for (size_t d = m - 1; d < n_var; d++)
-        g += (x[d] - 0.5) * (x[d] - 0.5);
-    for (size_t k = 0; k < m; k++) {
-        f[k] = 1.0 + g;
-        for (size_t d = 0; d + k + 1 < m; d++)
-            f[k] *= cos(x[d] * M_PI_2);
-        if (k > 0)
-            f[k] *= sin(x[m - 1 - k] * M_PI_2);
-    }
-}
 
 static uint32_t bits_of(const double x[])
 {
@@ -57,30 +31,22 @@ static uint32_t bits_of(const double x[])
     return (uint32_t)(bits ^ bits >> 32);
 }
 
-static Status evaluate(size_t n, const double X[], const size_t draws[], double F[], double G[], unsigned char ok[],
-                       void *user, Err *why)
+static void evaluate(FunctionCall *q, void *user)
 {
-    (void)draws;
-    (void)why;
     World *w = user;
     const size_t n_var = w->problem.n_var, m = w->problem.n_obj;
-    for (size_t i = 0; i < n; i++) {
-        const double *x = X + i * n_var;
-        Random chance = random_stream(bits_of(x), RANDOM_TEST, 0, 0);
-        for (size_t j = 0; j < w->n_rows; j++)
-            w->n_repeated += memcmp(w->seen[j], x, n_var * sizeof *x) == 0;
-        memcpy(w->seen[w->n_rows++], x, n_var * sizeof *x);
-        dtlz2(n_var, m, x, F + i * m);
-        for (size_t k = 0; w->all_alike_noise && k < m; k++)
-            F[i * m + k] = random_normal(&chance);
-        ok[i] = random_below(&chance, 100) >= (size_t)w->fail_share_percent;
-        if (!ok[i])
-            for (size_t k = 0; k < m; k++)
-                F[i * m + k] = -1e9; /* would dominate everything */
-        if (w->problem.n_con > 0)
-            G[i] = w->has_no_bound && x[1] > 0.9 ? 1e308 : 0.3 - x[0];
-    }
-    return STATUS_OK;
+    Random chance = random_stream(bits_of(q->x), RANDOM_TEST, 0, 0);
+    for (size_t j = 0; j < w->n_rows; j++)
+        w->n_repeated += memcmp(w->seen[j], q->x, n_var * sizeof *q->x) == 0;
+    memcpy(w->seen[w->n_rows++], q->x, n_var * sizeof *q->x);
+    textbook_dtlz2(n_var, m, q->x, q->f);
+    for (size_t k = 0; w->all_alike_noise && k < m; k++)
+        q->f[k] = random_normal(&chance);
+    q->ok = random_below(&chance, 100) >= (size_t)w->fail_share_percent;
+    for (size_t k = 0; !q->ok && k < m; k++)
+        q->f[k] = -1e9; /* would dominate everything */
+    if (w->problem.n_con > 0)
+        q->g[0] = w->has_no_bound && q->x[1] > 0.9 ? 1e308 : 0.3 - q->x[0];
 }
 
 static void world_with_limits(World *w, size_t n_var, size_t n_obj, size_t n_con)
@@ -104,23 +70,10 @@ static SearchConfig config(size_t initial, size_t max_evals)
     return c;
 }
 
-static int observe(const SearchView *v, const SearchTime *time, void *user)
-{
-    Seen *s = user;
-    (void)time;
-    s->n = v->all->n;
-    s->n_front = v->all->n_front;
-    s->n_failed = v->all->n_failed;
-    s->error = v->surrogate_error;
-    s->last_generation = v->generation;
-    rows_note(v->all, s->X, s->F, s->G, s->ok, s->kind, s->on_front, s->generation);
-    return ++s->views == s->stop_at_view;
-}
-
 static StopReason run(World *w, const SearchConfig *c, Seen *seen)
 {
     StopReason reason = STOP_NONE;
-    CHECK_OK(search_run(&w->problem, c, NULL, observe, seen, &reason, &err), &err);
+    CHECK_OK(search_run(&w->problem, c, NULL, seen_note, seen, &reason, &err), &err);
     assert_int_equal(seen->n, w->n_rows);
     assert_int_equal(w->n_repeated, 0);
     assert_at_most(seen->n, c->max_evals);
@@ -129,7 +82,7 @@ static StopReason run(World *w, const SearchConfig *c, Seen *seen)
 
 static double volume(size_t n, size_t m, const double F[])
 {
-    double lower[OBJ_MAX] = {0}, reference[OBJ_MAX];
+    double lower[SEEN_OBJ] = {0}, reference[SEEN_OBJ];
     for (size_t k = 0; k < m; k++)
         reference[k] = 1.5;
     Hypervolume *h;
@@ -144,11 +97,11 @@ static double volume(size_t n, size_t m, const double F[])
 static double volume_of_hypercube(const World *w, size_t n)
 {
     const size_t n_var = w->problem.n_var, m = w->problem.n_obj;
-    double X[ROWS_MAX * VAR_MAX], F[ROWS_MAX * OBJ_MAX];
-    size_t slices[ROWS_MAX];
+    double X[SEEN_ROWS * SEEN_VAR], F[SEEN_ROWS * SEEN_OBJ];
+    size_t slices[SEEN_ROWS];
     latin_hypercube(1, 0, n, n_var, X, slices); /* the box is the unit cube */
     for (size_t i = 0; i < n; i++)
-        dtlz2(n_var, m, X + i * n_var, F + i * m);
+        textbook_dtlz2(n_var, m, X + i * n_var, F + i * m);
     return volume(n, m, F);
 }
 
@@ -171,26 +124,18 @@ TEST(three_objectives_beat_a_latin_hypercube_of_the_same_size)
     assert_int_equal(run(&here, &c, &seen), STOP_EVALUATIONS);
     assert_int_equal(seen.n, 120);
     /* the whole front would give 1.5^3 - pi/6; the sample reaches half of what the search does */
-    assert_less(0.9 * (3.375 - M_PI / 6), volume(seen.n, 3, seen.F));
-    assert_less(1.3 * volume_of_hypercube(&here, 120), volume(seen.n, 3, seen.F));
+    assert_less(0.9 * (3.375 - M_PI / 6), volume(seen.n, 3, seen.Y));
+    assert_less(1.3 * volume_of_hypercube(&here, 120), volume(seen.n, 3, seen.Y));
 }
 
 /* f = (sum x, 2 sum x): every search ends in the corner, and the designs nearest to the front become the same ones. */
-static Status sums(size_t n, const double X[], const size_t draws[], double F[], double G[], unsigned char ok[],
-                   void *user, Err *why)
+static void sums(FunctionCall *q, void *user)
 {
-    (void)draws;
-    (void)G;
-    (void)why;
     const World *w = user;
-    for (size_t i = 0; i < n; i++) {
-        F[2 * i] = 0.0;
-        for (size_t d = 0; d < w->problem.n_var; d++)
-            F[2 * i] += X[i * w->problem.n_var + d];
-        F[2 * i + 1] = 2.0 * F[2 * i];
-        ok[i] = 1;
-    }
-    return STATUS_OK;
+    q->f[0] = 0.0;
+    for (size_t d = 0; d < w->problem.n_var; d++)
+        q->f[0] += q->x[d];
+    q->f[1] = 2.0 * q->f[0];
 }
 
 TEST(answers_that_no_surrogate_fits_do_not_end_the_search)
@@ -201,7 +146,7 @@ TEST(answers_that_no_surrogate_fits_do_not_end_the_search)
         here.problem = function_problem(&here.function, 5, 2, 0, here.lower, here.upper, sums, &here);
         SearchConfig c = search_config(seed, 96, 80);
         c.max_evals = 400;
-        CHECK_OK(search_run(&here.problem, &c, NULL, observe, &seen, &reason, &err), &err);
+        CHECK_OK(search_run(&here.problem, &c, NULL, seen_note, &seen, &reason, &err), &err);
         assert_int_equal(seen.n, 400);
     }
 }
@@ -222,7 +167,7 @@ TEST(seven_objectives_beat_a_latin_hypercube_of_the_same_size)
     world(&here, 22, 7);
     const SearchConfig c = config(120, 240);
     assert_int_equal(run(&here, &c, &seen), STOP_EVALUATIONS);
-    assert_less(3 * volume_of_hypercube(&here, 240), volume(seen.n, 7, seen.F));
+    assert_less(3 * volume_of_hypercube(&here, 240), volume(seen.n, 7, seen.Y));
     size_t count[KIND_COUNT] = {0};
     for (size_t i = 0; i < seen.n; i++) {
         count[seen.kind[i]]++;
@@ -263,7 +208,7 @@ TEST(front_flags_equal_a_brute_force_filter)
     for (size_t i = 0; i < seen.n; i++) {
         int dominated = 0;
         for (size_t j = 0; j < seen.n; j++)
-            dominated |= dominates(4, seen.F + j * 4, seen.F + i * 4);
+            dominated |= dominates(4, seen.Y + j * 4, seen.Y + i * 4);
         assert_int_equal(seen.on_front[i], !dominated);
     }
 }
@@ -311,22 +256,18 @@ TEST(constraints_hold_on_the_front)
 typedef enum { SHARES, CLIPPED, SWITCHES, MODES } LimitMode;
 
 /* The welded beam (Ragsdell and Phillips, J. Eng. Ind. 98 (1976) 1021-1025): cost, deflection, four limits by the mode. */
-static Status weld(size_t n, const double X[], const size_t draws[], double F[], double G[], unsigned char ok[],
-                   void *mode, Err *why)
+static void weld(FunctionCall *q, void *mode)
 {
-    const double *x = X, h = x[0], l = x[1], t = x[2], b = x[3];
+    const double *x = q->x, h = x[0], l = x[1], t = x[2], b = x[3];
     const double M = 6000 * (14 + l / 2), R = sqrt(l * l / 4 + (h + t) * (h + t) / 4), along = 6000 / (M_SQRT2 * h * l),
                  turn = M * R / (2 * M_SQRT2 * h * l * (l * l / 12 + (h + t) * (h + t) / 4)),
                  shear = sqrt(along * along + along * turn * l / R + turn * turn),
                  buckles = 4.013 * 30e6 * t * b * b * b / 6 / 196 * (1 - t / 28 * sqrt(30e6 / 48e6));
     const double g[] = {shear / 13600 - 1, 36000 * 14 / (b * t * t) / 30000 - 1, h / b - 1, 1 - buckles / 6000};
-    (void)n, (void)draws, (void)why;
-    F[0] = 1.10471 * h * h * l + 0.04811 * t * b * (14 + l);
-    F[1] = 4 * 6000 * 14 * 14 * 14 / (30e6 * b * t * t * t);
+    q->f[0] = 1.10471 * h * h * l + 0.04811 * t * b * (14 + l);
+    q->f[1] = 4 * 6000 * 14 * 14 * 14 / (30e6 * b * t * t * t);
     for (int c = 0; c < 4; c++)
-        G[c] = *(LimitMode *)mode == SHARES ? g[c] : *(LimitMode *)mode == CLIPPED ? fmax(g[c], 0) : g[c] > 0;
-    *ok = 1;
-    return STATUS_OK;
+        q->g[c] = *(LimitMode *)mode == SHARES ? g[c] : *(LimitMode *)mode == CLIPPED ? fmax(g[c], 0) : g[c] > 0;
 }
 
 static int least_cost(const SearchView *v, const SearchTime *time, void *least)
@@ -334,7 +275,7 @@ static int least_cost(const SearchView *v, const SearchTime *time, void *least)
     (void)time;
     for (size_t i = 0; i < v->all->n; i++)
         if (v->all->on_front[i])
-            *(double *)least = fmin(*(double *)least, v->all->F[2 * i]);
+            *(double *)least = fmin(*(double *)least, v->all->Y[2 * i]);
     return 0;
 }
 
@@ -436,9 +377,9 @@ TEST(every_way_to_stop_is_named)
 /* With an error limit that nothing exceeds all predictions stand, and still a few are checked in each generation. */
 static double gain_between(const Seen *s, size_t m, const size_t cuts[2], double h[2])
 {
-    unsigned char all[ROWS_MAX];
+    unsigned char all[SEEN_ROWS];
     memset(all, 1, sizeof all);
-    CHECK_OK(convergence_shares(&(GrowingFront){s->n, m, s->F, NULL, NULL, all, s->on_front}, 2, cuts, h, &err), &err);
+    CHECK_OK(convergence_shares(&(GrowingFront){s->n, m, s->Y, NULL, NULL, all, s->on_front}, 2, cuts, h, &err), &err);
     return h[1] - h[0];
 }
 
@@ -501,23 +442,19 @@ TEST(shares_are_areas_in_a_box_about_the_front)
 
 static double volume_of_ok(const Seen *s, size_t m)
 {
-    double F[ROWS_MAX * OBJ_MAX];
+    double F[SEEN_ROWS * SEEN_OBJ];
     size_t n = 0;
     for (size_t i = 0; i < s->n; i++)
         if (s->ok[i])
-            memcpy(F + m * n++, s->F + m * i, m * sizeof *F);
+            memcpy(F + m * n++, s->Y + m * i, m * sizeof *F);
     return volume(n, m, F);
 }
 
 /* The best of DTLZ2 is at x_d = 1/2 for d = 2..9: there, and in a third of the box, evaluations fail. */
-static Status fail_in_a_slab(size_t n, const double X[], const size_t draws[], double F[], double G[],
-                             unsigned char ok[], void *user, Err *why)
+static void fail_in_a_slab(FunctionCall *q, void *user)
 {
-    TRY(evaluate(n, X, draws, F, G, ok, user, why));
-    const World *w = user;
-    for (size_t i = 0; i < n; i++)
-        ok[i] = fabs(X[i * w->problem.n_var + 5] - 0.55) > 0.165;
-    return STATUS_OK;
+    evaluate(q, user);
+    q->ok = fabs(q->x[5] - 0.55) > 0.165;
 }
 
 TEST(where_a_third_of_the_box_fails_and_the_best_of_it_the_surrogate_is_never_behind)
@@ -627,7 +564,7 @@ TEST(an_archive_beyond_the_surface_s_size_is_thinned)
     SearchConfig c = config(40, 200);
     c.surrogate_max = 60;
     assert_int_equal(run(&here, &c, &seen), STOP_EVALUATIONS);
-    assert_less(0.9 * (3.375 - M_PI / 6), volume(seen.n, 3, seen.F));
+    assert_less(0.9 * (3.375 - M_PI / 6), volume(seen.n, 3, seen.Y));
 }
 
 TEST(settings_that_make_no_sense_are_refused_by_name)
@@ -636,52 +573,28 @@ TEST(settings_that_make_no_sense_are_refused_by_name)
     world(&here, 6, 2);
     SearchConfig c = config(40, 50);
     c.population = 2;
-    assert_int_equal(search_run(&here.problem, &c, NULL, NULL, NULL, &reason, &err), STATUS_BAD_DATA);
-    assert_non_null(strstr(err.text, "population"));
+    assert_refused(search_run(&here.problem, &c, NULL, NULL, NULL, &reason, &err), STATUS_BAD_DATA, "population");
     c = config(40, 50);
     here.lower[3] = 2.0;
-    assert_int_equal(search_run(&here.problem, &c, NULL, NULL, NULL, &reason, &err), STATUS_BAD_DATA);
-    assert_non_null(strstr(err.text, "variable 4"));
+    assert_refused(search_run(&here.problem, &c, NULL, NULL, NULL, &reason, &err), STATUS_BAD_DATA, "variable 4");
 }
 
-static Status evaluate_agreeing(size_t n, const double X[], const size_t draws[], double F[], double G[],
-                                unsigned char ok[], void *user, Err *why)
+static void evaluate_agreeing(FunctionCall *q, void *user)
 {
-    (void)draws;
-    World *w = user;
-    (void)G;
-    (void)why;
-    for (size_t i = 0; i < n; i++) {
-        double sum = 0.0;
-        for (size_t d = 0; d < w->problem.n_var; d++)
-            sum += X[i * w->problem.n_var + d];
-        F[2 * i] = sum;
-        F[2 * i + 1] = 2.0 * sum;
-        ok[i] = 1;
-    }
-    w->n_rows += n;
-    return STATUS_OK;
+    sums(q, user);
+    ((World *)user)->n_rows++;
 }
 
 /* f = x_0 + g, 1 - x_0 + g with Rastrigin's function g of the other variables. */
-static Status evaluate_waves(size_t n, const double X[], const size_t draws[], double F[], double G[],
-                             unsigned char ok[], void *user, Err *why)
+static void evaluate_waves(FunctionCall *q, void *user)
 {
-    (void)draws;
     World *w = user;
-    (void)G;
-    (void)why;
-    for (size_t i = 0; i < n; i++) {
-        const double *x = X + i * w->problem.n_var;
-        double g = 0.0;
-        for (size_t d = 1; d < w->problem.n_var; d++)
-            g += 4.0 * (x[d] - 0.37) * (x[d] - 0.37) + 0.3 * (1.0 - cos(2.0 * M_PI * w->waves * (x[d] - 0.37)));
-        F[2 * i] = x[0] + g;
-        F[2 * i + 1] = 1.0 - x[0] + g;
-        ok[i] = 1;
-    }
-    w->n_rows += n;
-    return STATUS_OK;
+    double g = 0.0;
+    for (size_t d = 1; d < w->problem.n_var; d++)
+        g += 4.0 * (q->x[d] - 0.37) * (q->x[d] - 0.37) + 0.3 * (1.0 - cos(2.0 * M_PI * w->waves * (q->x[d] - 0.37)));
+    q->f[0] = q->x[0] + g;
+    q->f[1] = 1.0 - q->x[0] + g;
+    w->n_rows++;
 }
 
 /* Nearest to the front, where the sum is 1, and how many designs are neither samples nor infill. */
@@ -699,7 +612,7 @@ static double best_of_waves(int waves, uint32_t seed, size_t *n_variation)
     *n_variation = 0;
     for (size_t i = 0; i < seen.n; i++) {
         *n_variation += seen.kind[i] == KIND_OFFSPRING;
-        best = fmin(best, seen.F[2 * i] + seen.F[2 * i + 1]);
+        best = fmin(best, seen.Y[2 * i] + seen.Y[2 * i + 1]);
     }
     return best;
 }
@@ -737,13 +650,13 @@ TEST(without_a_surrogate_the_front_is_worse)
     SearchConfig c = config(40, 200);
     world(&here, 12, 3);
     run(&here, &c, &seen);
-    const double with = volume(seen.n, 3, seen.F);
+    const double with = volume(seen.n, 3, seen.Y);
     c.surrogate = SURROGATE_OFF;
     fresh(NULL);
     world(&here, 12, 3);
     run(&here, &c, &seen);
     assert_true(isnan(seen.error));
-    assert_less(volume(seen.n, 3, seen.F), with);
+    assert_less(volume(seen.n, 3, seen.Y), with);
 }
 
 TEST(a_start_of_size_zero_follows_the_number_of_variables)

@@ -2,8 +2,7 @@
  *
  * WFG: the sum over the points of what each adds to those after it; exponential in the number of objectives.
  * Source  While, Bradstreet and Barone, IEEE Trans. Evol. Comput. 16 (2012) 86-95. */
-#ifndef IMTET_TESTS_WFG_H
-#define IMTET_TESTS_WFG_H
+#pragma once
 
 #include "check.h"
 
@@ -76,5 +75,3 @@ static inline double wfg_hypervolume(size_t n, size_t m, const double F[], const
     const double volume = wfg_volume_of(m, count, store, reference, store + (n + 1) * m);
     return volume;
 }
-
-#endif

@@ -3,8 +3,7 @@
  * Each takes any bytes; whatever they are, it must come back soon, with memory bounded by their number, and with
  * nothing broken or leaked. `make fuzz` drives them by libFuzzer, tests/test_fuzz_corpus.c replays the corpus without
  * it. */
-#ifndef IMTET_TESTS_FUZZ_TARGETS_H
-#define IMTET_TESTS_FUZZ_TARGETS_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -28,5 +27,3 @@ void fuzz_cells(const uint8_t *data, size_t size);    /* what its cells hold, pa
     X(worker)                                                                                                          \
     X(database)                                                                                                        \
     X(cells)
-
-#endif
