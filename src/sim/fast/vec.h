@@ -217,9 +217,9 @@ static inline double largest(const vec *a, int nf)
     return lanes_max(most);
 }
 
-/* Blocks first, first + 1 .. (n_blocks of them) of Y_r = sum_i X_r[i] A[i], of `count` numbers of X_r and rows of A, each
- * of `blocks` vectors; r = 0..n_rhs-1. The sums stay in registers: an element of X, once in all lanes, serves all
- * blocks. */
+/* Blocks first, first + 1 .. (n_blocks of them) of Y_r = sum_i X_r[i] A[i], of `count` numbers of X_r and rows of A,
+ * each of `blocks` vectors; r = 0..n_rhs-1. The sums stay in registers: an element of X, once in all lanes, serves
+ * all blocks. */
 INLINE void rows_times_blocks(const int n_rhs, const int n_blocks, const vec *A, int blocks, int first, int count,
                               const vec *const X[], vec *const Y[])
 {
