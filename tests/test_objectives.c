@@ -102,8 +102,7 @@ TEST(every_file_and_command_follows_the_objectives_by_name)
     assert_close(before, polished.values[1 + N_VAR], 0.5);
     assert_true(error > 0.0 && error < 0.1 * before);
     free(output_of("optimize @/other"));
-    expect_output("largest bending stress of the core [Pa], lower is better",
-                  "optimize @/other --max-evals 34");
+    expect_output("largest bending stress of the core [Pa], lower is better", "optimize @/other --max-evals 34");
     expect(65, "search.objectives is core_stress_pa, impacts , j1_m there, now auto",
            "optimize @/tower.ini --out @/other");
 }
