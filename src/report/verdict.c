@@ -149,7 +149,7 @@ static Status say_as_built(Verdict *v, Settings *s, Err *err)
     fprintf(v->out, "As built, with gaps %g mm off (mean ± standard deviation of %d, %zu failed): ",
             1e3 * s->sim.gap_tolerance_m, VERDICT_REPLICATES, sum.n_failed);
     say_values(v, mean, sd);
-    fprintf(v->out, "; J1 is on average %+.0f %% off the drawing.\n", 100 * v->off);
+    fprintf(v->out, "; J1 is on average %+.0f %% off the drawing.\n", round(100 * v->off) + 0.0); /* no -0 */
     return STATUS_OK;
 }
 
