@@ -1,9 +1,10 @@
 /* bench/main.c -- the program imtet-bench: engines compared by speed, accuracy and reliability.
  *
- *   imtet-bench sweep | throughput | promise | stability | laws | search | loop | problem [--option [VALUE]] ... */
+ *   imtet-bench sweep | throughput | promise | stability | laws | search | loop | schedule | problem [--option [VALUE]] ... */
 #include <cblas.h>
 #include <string.h>
 
+#include "bench/schedule.h"
 #include "bench/search/factors.h"
 #include "bench/search/loop.h"
 #include "bench/stability/laws.h"
@@ -234,6 +235,15 @@ static Status run_loop(const Args *args, Err *err)
     return status;
 }
 
+static Status run_schedule(const Args *args, Err *err)
+{
+    SchedulePlan plan = {.folder = args->operand};
+    TRY(args_number(args, "--serial", 0.0, 1.0, 0.2, &plan.serial, err));
+    TRY(args_number(args, "--ends", 0.0, 1e9, 0.0, &plan.ends, err));
+    TRY(args_number(args, "--chain", 0.0, 1e9, 0.0, &plan.chain, err));
+    return schedule(&plan, stdout, err);
+}
+
 /* ---- the command line -------------------------------------------------------------------------------------------- */
 
 static const Command COMMANDS[] = {
@@ -355,6 +365,19 @@ static const Command COMMANDS[] = {
              OPTION_SET,
          },
      .run = run_loop,
+     .program = "imtet-bench"},
+    {.name = "schedule",
+     .operand = "RUN",
+     .summary = "a run of one thread replayed on 1 to 64 workers",
+     .example = "imtet-bench schedule results/kobe",
+     .details = "Efficiency, critical path and waiting, from the times of its designs and of its search. As CSV.",
+     .options =
+         {
+             {"--serial", "SHARE", NULL, 0, "of choosing designs, that one processor does alone; 0.2 unless given"},
+             {"--ends", "S", NULL, 0, "work behind the search: polishing, naming, baselines"},
+             {"--chain", "S", NULL, 0, "the longest chain in it"},
+         },
+     .run = run_schedule,
      .program = "imtet-bench"},
     {.name = "problem",
      .operand = "NAME",

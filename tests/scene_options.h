@@ -1,6 +1,7 @@
 /* tests/scene_options.h -- the options of a scene: the defaults, and those of the paper's study (configs/kobe.ini). */
 #pragma once
 
+#include "check.h"
 #include "evaluate/scenario.h"
 #include "motion/motion_scale.h"
 #include "scene/building.h"

@@ -3,7 +3,9 @@
 
 #include "store/run.h"
 #include "base/dominance.h"
+#include "store/database.h"
 #include "store/folder.h"
+#include "store/run_read.h"
 #include "study/merged.h"
 
 /* The sound run, copied, with that change. */
@@ -145,6 +147,33 @@ TEST(polished_designs_compete_with_the_front_and_can_be_dropped)
     assert_true(h.table.n == sound.table.n && h.n_front == sound.n_front && h.n_failed == sound.n_failed);
     for (size_t i = 0; i < h.table.n; i++)
         assert_int_equal(h.place[i].on_front, sound.place[i].on_front);
+}
+
+TEST(a_run_read_for_its_front_has_the_front_and_the_counts_of_the_whole)
+{
+    double x[6] = {0}, f[3][3] = {{0, 0, 0.9}, {9, 9, 9}};
+    Evaluation designs[3];
+    for (size_t i = 0; i < 3; i++)
+        designs[i] = (Evaluation){.outcome = i == 2 ? OUTCOME_ERROR : OUTCOME_OK, .x = x, .f = f[i]};
+    char folder[PATH_MAX], path[PATH_MAX + 12];
+    CHECK_OK(add_to_run(changed("SELECT 1", folder), 3, designs, NULL, &err), &err);
+    OWNED(run_free) Run whole = {0}, part = {0};
+    CHECK_OK(run_read(&whole, folder, &err), &err);
+    Database *d;
+    snprintf(path, sizeof path, "%s/run.sqlite", folder);
+    CHECK_OK(database_open(&d, path, DATABASE_READ, &err), &err);
+    CHECK_OK(run_load(&part, d, folder, RUN_FRONT, &err), &err);
+    database_close(d);
+    assert_less(part.table.n, whole.table.n);
+    assert_int_equal(part.n_front, whole.n_front);
+    assert_int_equal(part.n_failed, whole.n_failed);
+    assert_int_equal(part.n_repeats, whole.n_repeats);
+    assert_int_equal(part.n_finished, whole.n_finished);
+    for (size_t i = 0; i < part.n_front; i++) {
+        assert_int_equal(part.table.row[part.front[i]].id, whole.table.row[whole.front[i]].id);
+        for (size_t k = 0; k < 3; k++)
+            assert_same_number(part.F[3 * part.front[i] + k], whole.F[3 * whole.front[i] + k]);
+    }
 }
 
 /* Whether a design of the front of a or b dominates row i of a. */

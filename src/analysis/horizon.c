@@ -14,7 +14,7 @@ Status horizon_find(const Scenario *scenario, const double x[], double change, H
     *out = (Horizon){.reached_s = {NAN, NAN, NAN, NAN}};
     for (size_t k = 0; k < one.n && k < other.n && status == STATUS_OK; k++) {
         double apart = 0, whole = 0;
-        for (size_t i = 1; i < one.width; i++) {
+        for (size_t i = 1; i < one.width && i < other.width; i++) {
             const double a = track_at(&one, k, i), b = track_at(&other, k, i);
             apart += (a - b) * (a - b);
             whole += a * a;

@@ -221,11 +221,11 @@ static imtet_status make(imtet_search **out, const imtet_search_options *options
 {
     Err err = {0};
     if (!out)
-        return api_status(misused(&err, "imtet_search: out is NULL"), &err, error);
+        return api_status(misused(&err, "imtet_search_create or _load: out is NULL"), &err, error);
     *out = NULL;
     const Status status = options ? create(options, out, &err)
                           : path  ? saved_read(out, path, &err)
-                                  : misused(&err, "imtet_search: options or path is NULL");
+                                  : misused(&err, "imtet_search_create: options is NULL, or imtet_search_load: path");
     if (status != STATUS_OK) {
         handle_free(*out);
         *out = NULL;

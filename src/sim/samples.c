@@ -61,6 +61,11 @@ static void note(const SimSample *s, void *user)
 static void note_modes(const SimSample *s, void *user)
 {
     Track *t = user;
+    if (s->t == 0) { /* a run that is repeated may have more modes */
+        free(t->rows);
+        t->rows = NULL;
+        t->n = t->room = 0;
+    }
     t->width = 1 + 2 * (size_t)s->n_modes;
     double *row = next_row(t, s->t);
     if (!row)
@@ -78,10 +83,11 @@ static Status follow(Track *t, SceneKind kind, const double x[], SimResult *resu
     SimWorker *worker = t->worker;
     Status status = sim_run(worker, kind, x, result, err);
     sim_worker_free(worker);
-    t->outcome = result->outcome;
     if (status == STATUS_OK && t->lacks_memory)
         status = fail_memory(err, t->n, "rows of a response");
-    if (status != STATUS_OK)
+    if (status == STATUS_OK)
+        t->outcome = result->outcome;
+    else
         track_free(t);
     return status;
 }
@@ -105,7 +111,10 @@ Status track_modes(const Scene *scene, const double x[], Track *out, Err *err)
     TRY(sim_worker_create(&out->worker, scene, err));
     sim_worker_sample(out->worker, 0, note_modes, out);
     TRY(follow(out, SCENE_IMPACT, x, &result, err));
-    return result.outcome == RUN_OK ? STATUS_OK : bad_data(err, "the design cannot be simulated: %s", result.reason);
+    if (result.outcome == RUN_OK)
+        return STATUS_OK;
+    track_free(out);
+    return bad_data(err, "the design cannot be simulated: %s", result.reason);
 }
 
 void track_free(Track *t)

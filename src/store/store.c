@@ -146,9 +146,13 @@ Status store_open(RunStore **out, const char *folder, int fresh, Err *err)
     *out = NULL;
     RunStore *store;
     TRY_ROOM(store, 1, "a run", err);
-    pthread_cond_init(&store->news, NULL);
+    pthread_condattr_t clock;
+    pthread_condattr_init(&clock);
+    pthread_condattr_setclock(&clock, CLOCK_MONOTONIC);
+    pthread_cond_init(&store->news, &clock);
     pthread_mutex_init(&store->writing, NULL);
     pthread_mutex_init(&store->lock, NULL);
+    pthread_condattr_destroy(&clock);
     Status status = folder_take(&store->folder, folder, fresh, err);
     if (status == STATUS_OK && folder_has(store_folder(store), "run.sqlite"))
         status = folder_advise(store_folder(store), load_run(store, err), err);
@@ -330,7 +334,7 @@ static void *commit_in_time(void *user)
         if (store->status != STATUS_OK || (!store->is_open && store->waiting.n == 0)) {
             pthread_cond_wait(&store->news, &store->lock);
         } else if (clock_seconds() < due) {
-            pthread_cond_clockwait(&store->news, &store->lock, CLOCK_MONOTONIC, &at);
+            pthread_cond_timedwait(&store->news, &store->lock, &at);
         } else {
             pthread_mutex_unlock(&store->lock);
             pthread_mutex_lock(&store->writing);
