@@ -154,9 +154,11 @@ static Status choose_channel(const Record *r, const char *path, const Channel **
     else if (n_accelerations != 1)
         return n_accelerations == 0
                    ? bad_data(err, "%s: none of its channels is an acceleration: %s", path, list)
-                   : bad_data(err,
-                              "%s: holds %zu channels: %s; choose one by motion.channel (--set motion.channel=NAME)",
-                              path, n, list);
+                   : bad_data(
+                         err,
+                         "%s: holds %zu channels: %s; choose one by motion.channel (--set motion.channel=NAME), or "
+                         "behind the file, 'FILE channel=NAME'",
+                         path, n, list);
     if (!*out)
         return bad_data(err, "%s: motion.channel '%.40s' is not exactly one of its channels: %s", path, wanted, list);
     if (!is_acceleration(*out))

@@ -141,10 +141,9 @@ static int climb(const Rbf *m, Worker *k, size_t n, const Output *o, RbfForm *fo
             p[i_nugget] = fmin(p[i_nugget] + log(10.0), 0.0);
             continue;
         }
-        if (step == steps)
-            break;
-        likelihood_slope(m, k, n, *form, &at, s2, g);
-        for (size_t i = 0; i < n_p; i++) {
+        if (step < steps)
+            likelihood_slope(m, k, n, *form, &at, s2, g);
+        for (size_t i = 0; i < n_p && step < steps; i++) {
             /* The bounds of theta and warp only keep exp finite where the data say nothing: far wider ones change no
              * front (docs/measured/constants.csv). All of the variance may be noise. */
             const double least = log(i < i_nugget ? 1e-4 : NUGGET_MIN), most = log(i < i_nugget ? 50.0 : 1.0);
@@ -187,8 +186,8 @@ static void try_form(const Rbf *m, Worker *k, size_t n, const Output *o, RbfForm
 }
 
 /* On at most TUNE_CENTRES_MAX centres, evenly spread over their order: a likelihood costs n^3. The first time every
- * form is tried, an additive part with the best tail alone; later the present one and, in turn, a challenger, which is
- * tuned where it is nearly as good with the scales of the present one. */
+ * form is tried; later the present one and, in turn, a challenger, which is tuned where it is nearly as good with the
+ * scales of the present one. */
 static void tune_output(const Rbf *m, Worker *k, Output *o, const double f[], const double noise[])
 {
     const size_t n = MIN_OF(m->n, TUNE_CENTRES_MAX), n_forms = RBF_N_KERNELS * RBF_N_TAILS;
@@ -201,7 +200,6 @@ static void tune_output(const Rbf *m, Worker *k, Output *o, const double f[], co
         k->y[i] = (f[from] - o->mean) / o->scale;
         k->noise[i] = noise[from];
     }
-    k->best_form = o->form;
     k->min_error = k->likeliest[RBF_CONSTANT] = k->likeliest[RBF_LINEAR] = k->likeliest[RBF_QUADRATIC] = INFINITY;
     if (!is_first) {
         RbfForm present = o->form;
@@ -212,7 +210,7 @@ static void tune_output(const Rbf *m, Worker *k, Output *o, const double f[], co
     for (size_t i = 0; i < n_forms; i++) {
         const RbfForm form = {(RbfKernel)(i / RBF_N_TAILS), (RbfTail)(i % RBF_N_TAILS), nugget};
         RbfForm trial = form;
-        if (is_first && (form.kernel < RBF_ADDITIVE || form.tail == k->best_form.tail))
+        if (is_first)
             try_form(m, k, n, o, form, &o->shape, TUNE_STEPS_FIRST);
         else if (i == m->n_tuned % n_forms && (form.kernel != o->form.kernel || form.tail != o->form.tail) &&
                  trial_error(m, k, n, &trial, &k->best_shape, 0) < CHALLENGE_MAX * k->min_error)
