@@ -48,14 +48,13 @@ typedef struct {
     void (*record)(const Scenario *w, void *user);   /* for every record, then */
     void (*progress)(const StudyProgress *p, void *user);
     void *user;
-    Run *
-        run; /* becomes the finished run (RUN_FRONT), for run_free, where the study returns STATUS_OK; NULL: not wanted */
+    Run *run; /* becomes the finished run, for run_free, of RUN_FRONT, where it returns STATUS_OK; NULL: not wanted */
 } StudyOptions;
 
 /* STATUS_STOPPED: it can be resumed, and the summary is filled. Settings that differ: STATUS_BAD_DATA,
  * with the differences in `err` as far as they fit, all of them in `differences` (NULL: not wanted), a line each. */
 Status study_run(const Settings *s, const StudyOptions *options, StudySummary *summary, FILE *differences, Err *err);
 
-/* Whether there is nothing more to do within the limits of the run; then it passes over to `run` (RUN_FRONT), and the summary is
- * filled, without the baselines. */
+/* Whether there is nothing more to do within the limits of the run; then it passes over to `run` (RUN_FRONT), and the
+ * summary is filled, without the baselines. */
 int study_finished(RunStore *store, StudySummary *summary, Run *run);

@@ -201,7 +201,10 @@ static int is_rule_above(const Lines *l)
 
 static int has_marks(const Lines *l)
 {
-    return line_has(l, ",|;|\t");
+    const char *p = l->from;
+    while (p < l->to && !strchr(",;\t", *p))
+        p++;
+    return p < l->to;
 }
 
 /* The name at *p; commas, semicolons or tabs part names, or else blanks, but none that stands in brackets or before
@@ -209,7 +212,7 @@ static int has_marks(const Lines *l)
 static Cell next_name(const Lines *l, const char **p)
 {
     if (has_marks(l))
-        return cell_next(p, l->to, line_has(l, ";") ? ";" : ",\t");
+        return cell_next(p, l->to, memchr(l->from, ';', (size_t)(l->to - l->from)) ? ";" : ",\t");
     Cell c = {.from = *p, .to = *p};
     for (int deep = 0; c.to < l->to; c.to++) {
         const char *behind = c.to;
