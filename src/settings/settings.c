@@ -777,7 +777,7 @@ static void format_value(const Settings *s, const Option *o, char text[OPTION_TE
     case KIND_PATH:
     case KIND_PATH_LIST:
         snprintf(text, OPTION_TEXT_MAX, "%s", (const char *)field);
-        break;
+        return; /* may be empty */
     }
     if (!*text) /* no number in the list or among the shares */
         snprintf(text, OPTION_TEXT_MAX, "none");

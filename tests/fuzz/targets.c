@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <fcntl.h>
 #include <unistd.h>
 
 #include "scene/design.h"
@@ -27,10 +28,12 @@ static void demand_reason(Status status, const Err *err)
     demand(status == STATUS_OK || err->text[0], "a refusal has a reason");
 }
 
-/* The bytes as a file of memory: its descriptor, and the path under which it can be opened. */
+/* The bytes as a file of memory: its descriptor, and the path under which it can be opened. The descriptor is high: a
+ * record called 4 in these settings would mean descriptor 4, another file when they are read again. */
 static int file_of(const uint8_t *data, size_t size, char path[64])
 {
-    const int fd = memfd_create("input", MFD_CLOEXEC);
+    const int low = memfd_create("input", MFD_CLOEXEC), fd = fcntl(low, F_DUPFD_CLOEXEC, 900);
+    close(low);
     demand(fd >= 0 && write(fd, data, size) == (ssize_t)size, "a file of memory can be had");
     snprintf(path, 64, "/proc/self/fd/%d", fd);
     return fd;
