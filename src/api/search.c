@@ -225,7 +225,7 @@ static imtet_status make(imtet_search **out, const imtet_search_options *options
     *out = NULL;
     const Status status = options ? create(options, out, &err)
                           : path  ? saved_read(out, path, &err)
-                                  : misused(&err, "imtet_search_create: options is NULL, or imtet_search_load: path");
+                                  : misused(&err, "imtet_search_create: options is NULL, or _load: path is NULL");
     if (status != STATUS_OK) {
         handle_free(*out);
         *out = NULL;
