@@ -40,4 +40,4 @@ tests-mpi: $(PROGRAM) $(TEXTBOOK) $(MPI_PROGRAM) $(BUILD)/other/imtet_mpi $(BUIL
 test-mpi-here: tests-mpi
 	@echo '$(MODE) mpi $(BUILD)/tests/mpi mpi "$(CASE)"' | \
 	 IMTET_MPI=$(abspath $(MPI_PROGRAM)) IMTET_MPI_OTHER=$(abspath $(BUILD)/other/imtet_mpi) \
-	 MPI_RANKS=$(RANKS) TEST_LIMIT_S=900 scripts/run-tests 1
+	 MPI_RANKS=$(RANKS) TEST_LIMIT_S=1500 scripts/run-tests 1
