@@ -174,6 +174,42 @@ TEST(a_run_read_for_its_front_has_the_front_and_the_counts_of_the_whole)
     }
 }
 
+/* The square of the distance of the nearest of `chosen` to design i, each objective as a share of its range on the front. */
+static double apart2(const Run *run, size_t i, size_t n, const size_t chosen[])
+{
+    double nearest = INFINITY;
+    for (size_t c = 0; c < n; c++) {
+        double sum = 0;
+        for (size_t k = 0; k < 2; k++) {
+            double low = INFINITY, high = -INFINITY;
+            for (size_t j = 0; j < run->n_front; j++) {
+                low = fmin(low, run->F[2 * run->front[j] + k]);
+                high = fmax(high, run->F[2 * run->front[j] + k]);
+            }
+            const double other = chosen[c] < run->table.n ? run->F[2 * chosen[c] + k] : low;
+            sum += pow((run->F[2 * i + k] - other) / (high - low), 2);
+        }
+        nearest = fmin(nearest, sum);
+    }
+    return nearest;
+}
+
+TEST(a_choice_of_three_begins_with_the_knee_and_goes_on_with_the_farthest)
+{
+    char folder[PATH_MAX];
+    OWNED(run_free) Run run = {0};
+    CHECK_OK(run_read(&run, path_of("halves", folder), &err), &err);
+    size_t rows[3];
+    const size_t ideal = run.table.n;
+    assert_int_equal(run_spread_out(&run, 3, 1, rows), 3);
+    for (size_t j = 0; j < run.n_front; j++) {
+        const size_t i = run.front[j];
+        assert_true(apart2(&run, i, 1, &ideal) >= apart2(&run, rows[0], 1, &ideal));
+        for (size_t n = 1; n < 3; n++)
+            assert_true(apart2(&run, i, n, rows) <= apart2(&run, rows[n], n, rows));
+    }
+}
+
 /* Whether a design of the front of a or b dominates row i of a. */
 static int is_dominated(const Run *a, size_t i, const Run *b)
 {

@@ -216,31 +216,36 @@ static Status create(const imtet_search_options *o, imtet_search **out, Err *err
     return handle_open(s, err);
 }
 
-/* Made of options, or loaded from a file: where that fails nothing is left of it. */
-static imtet_status make(imtet_search **out, const imtet_search_options *options, const char *path, imtet_error *error)
+/* What making or loading one came to: where it failed nothing is left of it. */
+static imtet_status made(imtet_search **out, Status status, const Err *err, imtet_error *error)
 {
-    Err err = {0};
-    if (!out)
-        return api_status(misused(&err, "imtet_search_create or _load: out is NULL"), &err, error);
-    *out = NULL;
-    const Status status = options ? create(options, out, &err)
-                          : path  ? saved_read(out, path, &err)
-                                  : misused(&err, "imtet_search_create: options is NULL, or _load: path is NULL");
-    if (status != STATUS_OK) {
+    if (status != STATUS_OK && out) {
         handle_free(*out);
         *out = NULL;
     }
-    return api_status(status, &err, error);
+    return api_status(status, err, error);
 }
 
 imtet_status imtet_search_create(const imtet_search_options *options, imtet_search **out, imtet_error *error)
 {
-    return make(out, options, NULL, error);
+    Err err = {0};
+    if (out)
+        *out = NULL;
+    return made(out,
+                out && options ? create(options, out, &err)
+                               : misused(&err, "imtet_search_create: %s is NULL", out ? "options" : "out"),
+                &err, error);
 }
 
 imtet_status imtet_search_load(const char *path, imtet_search **out, imtet_error *error)
 {
-    return make(out, NULL, path, error);
+    Err err = {0};
+    if (out)
+        *out = NULL;
+    return made(out,
+                path && out ? saved_read(out, path, &err)
+                            : misused(&err, "imtet_search_load: %s is NULL", out ? "path" : "out"),
+                &err, error);
 }
 
 void imtet_search_free(imtet_search **search)

@@ -21,9 +21,9 @@ static inline int is_blank(char c)
     return c == ' ' || (c >= '\t' && c <= '\r');
 }
 
-/* More behind what is in text (size), parted from it where there is something; what has no room is left out. */
-__attribute__((format(printf, 4, 5))) void text_join(char text[], size_t size, const char *parting, const char *format,
-                                                     ...);
+/* More behind what is in text (size), the separator between where there is something; what has no room is left out. */
+__attribute__((format(printf, 4, 5))) void text_join(char text[], size_t size, const char *separator,
+                                                     const char *format, ...);
 
 FILE *text_open(char **text, size_t *length);
 int text_close(FILE *stream);

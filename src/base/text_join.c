@@ -4,12 +4,12 @@
 #include <stdarg.h>
 #include <string.h>
 
-void text_join(char text[], size_t size, const char *parting, const char *format, ...)
+void text_join(char text[], size_t size, const char *separator, const char *format, ...)
 {
     size_t n = strlen(text);
     va_list values;
     va_start(values, format);
-    n += snprintf(text + n, size - n, "%s", n ? parting : "");
+    n += snprintf(text + n, size - n, "%s", n ? separator : "");
     if (n < size)
         vsnprintf(text + n, size - n, format, values);
     va_end(values);

@@ -125,6 +125,22 @@ static json_t *json_values(const Schema *schema, size_t first, size_t n, const s
     return o;
 }
 
+/* As front.csv; a design that was picked twice stands there once. */
+static Status write_csv(const Run *run, const Picks *p, const char *path, Err *err)
+{
+    Output o;
+    TRY(output_open(&o, path, err));
+    size_t n = 0, rows[PICKS_MAX];
+    for (size_t i = 0; i < p->n; i++) {
+        size_t before = 0;
+        while (before < n && rows[before] != p->pick[i].row)
+            before++;
+        if (before == n)
+            rows[n++] = p->pick[i].row;
+    }
+    return output_end(&o, export_designs(o.stream, run, EXPORT_FRONT, n, rows, err), err);
+}
+
 static Status give(const Args *args, const Run *run, const Picks *p, Err *err)
 {
     const Schema *s = &run->schema;
@@ -167,19 +183,7 @@ static Status give(const Args *args, const Run *run, const Picks *p, Err *err)
     json_decref(variables);
     if (p->n > 0 && !outputs_standard(args, 0))
         document_verdict(&d, run, p->pick[wanted].row, NULL);
-
-    /* As front.csv; a design that was picked twice stands there once. */
-    Status status = STATUS_OK;
-    Output o;
-    size_t n = 0, rows[PICKS_MAX];
-    for (size_t i = 0, before; i < p->n; i++) {
-        for (before = 0; before < n && rows[before] != p->pick[i].row;)
-            before++;
-        rows[n] = p->pick[i].row;
-        n += before == n;
-    }
-    if (args_has(args, "--csv") && (status = output_open(&o, args_value(args, "--csv"), err)) == STATUS_OK)
-        status = output_end(&o, export_designs(o.stream, run, EXPORT_FRONT, n, rows, err), err);
+    Status status = args_has(args, "--csv") ? write_csv(run, p, args_value(args, "--csv"), err) : STATUS_OK;
     THEN(status, document_give(&d, args, err));
     document_free(&d);
     if (p->n_left == 0)

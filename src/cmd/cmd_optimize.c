@@ -108,7 +108,7 @@ static void say_front(Document *d, const Run *run, const StudySummary *summary)
 static void say_clipped(Document *d, const Run *run)
 {
     size_t c = 0;
-    while (c < run->schema.n_extra && !(run->least[c] == 0 && run->most[c] > 0))
+    while (c < run->schema.n_extra && !(run->extra_min[c] == 0 && run->extra_max[c] > 0))
         c++;
     if (run->schema.order.n == 0 && c < run->schema.n_extra)
         document_say(d,

@@ -80,8 +80,10 @@ static Status take_file(Designs *d, const char *path, const char *choice, const 
     const int column = table_column(&t, "id");
     if (column >= 0) {
         ids = calloc(t.n_rows + 1, sizeof *ids);
-        for (size_t i = 0; ids && i < t.n_rows; i++)
-            ids[i] = isfinite(t.values[i * t.n_cols + column]) ? (long)t.values[i * t.n_cols + column] : 0;
+        for (size_t i = 0; ids && i < t.n_rows; i++) {
+            const double id = t.values[i * t.n_cols + column];
+            ids[i] = isfinite(id) ? (long)id : 0;
+        }
         status = ids ? drop_results(&t, path, space, err) : fail_memory(err, t.n_rows, "designs");
     }
     THEN(status, design_of_table(d, &t, path, space, err));

@@ -222,8 +222,8 @@ Status selftest(int as_json, Err *err)
     const double seconds = clock_seconds() - begun;
     const char *kernel = fast_kernel_name();
     if (as_json)
-        THEN(status, show_json(json_of("trusted=%c kernel=%s seconds=%g checks=%p", t.n_wrong == 0, kernel, seconds,
-                                       json_incref(t.checks)),
+        THEN(status, show_json(json_of("trusted=%c kernel=%s seconds=%g checks=%p", t.n_wrong == 0 ? 1 : 0, kernel,
+                                       seconds, json_incref(t.checks)),
                                err));
     json_decref(t.checks);
     if (t.n_wrong > 0)

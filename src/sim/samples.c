@@ -33,11 +33,11 @@ void sample_row(const SimWorker *worker, const SimSample *s, size_t n_floors, do
     sample_energies(s, row + (SAMPLE_PARTS - 1) * n_floors);
 }
 
-/* The next row; NULL: no memory. A run that is repeated begins anew at t = 0. */
+/* The next row; NULL: no memory. A run that is repeated begins anew at t = 0; it may have wider rows. */
 static double *next_row(Track *t, double time)
 {
     if (time == 0)
-        t->n = 0;
+        t->n = t->room = 0;
     if (t->n == t->room) {
         const size_t room = 2 * t->room + 1024;
         double *wider = realloc(t->rows, room * t->width * sizeof *wider);
@@ -61,11 +61,6 @@ static void note(const SimSample *s, void *user)
 static void note_modes(const SimSample *s, void *user)
 {
     Track *t = user;
-    if (s->t == 0) { /* a run that is repeated may have more modes */
-        free(t->rows);
-        t->rows = NULL;
-        t->n = t->room = 0;
-    }
     t->width = 1 + 2 * (size_t)s->n_modes;
     double *row = next_row(t, s->t);
     if (!row)

@@ -70,7 +70,7 @@ typedef struct Run {
     Settings *settings;
     Schema schema;
     size_t n_front, n_failed, n_repeats, n_generations, n_sessions; /* also of rows that are not kept */
-    double least[EXTRA_MAX], most[EXTRA_MAX]; /* of the further measures of all that succeeded, and 0 */
+    double extra_min[EXTRA_MAX], extra_max[EXTRA_MAX]; /* of the further measures of all that succeeded, and 0 */
     size_t n_finished;     /* evaluations of the search whose generation is finished: the first rows of a whole run */
     EvaluationTable table; /* f: of this very evaluation; sd, replicates: of the design */
     EvaluationTable finer; /* designs as they are with more steps: the rows of `table` have these numbers, and err */

@@ -133,7 +133,6 @@ static Status take_row(const Evaluation *e, void *user, Err *err)
 {
     Loading *l = user;
     Run *run = l->run;
-    const RunMark mark = mark_of(run, e->id);
     const int is_outside = kind_is_outside(e->kind), ok = has_succeeded(run, e);
     const long expected = (long)++l->n;
     if (!is_outside && ++l->n_of_search <= run->n_finished && e->id != expected)
@@ -141,13 +140,15 @@ static Status take_row(const Evaluation *e, void *user, Err *err)
     run->n_failed += !ok;
     run->n_repeats += e->kind == KIND_REPEAT;
     for (size_t i = 0; i < run->schema.n_extra && ok; i++) {
-        run->least[i] = fmin(run->least[i], e->extra[i]);
-        run->most[i] = fmax(run->most[i], e->extra[i]);
+        run->extra_min[i] = fmin(run->extra_min[i], e->extra[i]);
+        run->extra_max[i] = fmax(run->extra_max[i], e->extra[i]);
     }
-    const int may_be_on_it = mark.entered != NEVER && (mark.left == NEVER || run->finer.n > 0);
-    return l->parts == RUN_WHOLE || is_outside || !ok || may_be_on_it
-               ? evaluation_table_append(is_outside ? &l->polished : &run->table, e, err)
-               : STATUS_OK;
+    if (l->parts == RUN_FRONT && !is_outside && ok) {
+        const RunMark mark = mark_of(run, e->id);
+        if (mark.entered == NEVER || (mark.left != NEVER && run->finer.n == 0))
+            return STATUS_OK; /* never on the front */
+    }
+    return evaluation_table_append(is_outside ? &l->polished : &run->table, e, err);
 }
 
 /* When a design was on the front, whether it succeeded, of how many simulations it is. */

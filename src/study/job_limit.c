@@ -11,11 +11,12 @@ Status job_seconds(double *seconds, Err *err)
 {
     static const char KEY[] = " EndTime=";
     const char *end = getenv("SLURM_JOB_END_TIME"), *job = getenv("SLURM_JOB_ID");
-    double end_s = is_number(end) ? strtod(end, NULL) : NAN;
-    if (!is_number(end) && !is_number(job))
+    const int is_told = is_number(end);
+    double end_s = is_told ? strtod(end, NULL) : NAN;
+    if (!is_told && !is_number(job))
         return bad_data(
             err, "search.max_hours = auto: this is no job of Slurm (there is no SLURM_JOB_ID); give hours instead");
-    if (!is_number(end)) {
+    if (!is_told) {
         /* Slurm is asked for one line of KEY=VALUE, of which EndTime is "2026-11-22T15:00:00" in local time; what is no
          * time ("Unknown") is no limit. */
         char command[96], words[8192];
