@@ -120,8 +120,9 @@ static void is_the_changed_one(const char *key, unsigned flags, const char *was,
 /* Another value: the next word, a text or a number in range. */
 static void change_one(Settings *s, int i, const char *was)
 {
-    static const char *const VALUES[] = {"0.0123",      "0.31",      "2",   "7",       "90",     "1000",
-                                         "damping=0.3", "0.31,0.32", "2,3", "2e3,3e3", "link=2", "structure=0.3"};
+    static const char *const VALUES[] = {"0.0123", "0.31",          "2",           "7",   "90",
+                                         "1000",   "damping=0.3",   "0.31,0.32",   "2,3", "2e3,3e3",
+                                         "link=2", "structure=0.3", "strength=0.3"};
     const char *words = settings_words(i), *bar = words ? strchr(words, '|') : NULL;
     char assignment[2 * OPTION_TEXT_MAX];
     err = (Err){0};

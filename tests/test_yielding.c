@@ -344,8 +344,7 @@ TEST(both_engines_agree_where_storeys_lose_strength_and_stiffness)
         Tower t;
         builtin_tower(&t, e ? ENGINE_CVODE : ENGINE_FAST, 0.004);
         t.settings.building.hysteresis = HYSTERESIS_BOUC_WEN;
-        t.settings.building.strength_degradation = 0.02;
-        t.settings.building.stiffness_degradation = 0.05;
+        t.settings.building.degradation = (DegradationOptions){0.02, 0.05};
         r[e] = builtin_run(&t, SCENE_NO_CORE);
     }
     assert_less(5, r[0].ed_hysteresis_pct);

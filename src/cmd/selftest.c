@@ -46,7 +46,6 @@ static const char *const COMMON[] = {
     "contact.restitution=0.7",
     "contact.radius_m=0.1",
     "contact.youngs_modulus_pa=2.1e11",
-    "contact.poisson=0.3",
     "motion.pga_g=0.3",
     "motion.stretch=3.1",
     "sim.engine=fast",

@@ -31,6 +31,10 @@ typedef enum { DAMPING_MODEL_LIST(CHOICE_NAME) } DampingModel;
 typedef enum { HYSTERESIS_LIST(CHOICE_NAME) } Hysteresis;
 
 typedef struct {
+    double strength, stiffness; /* [-] per energy, s_s and s_k of sim/storey.h */
+} DegradationOptions;
+
+typedef struct {
     char model[OPTION_TEXT_MAX]; /* guyan | appendix | a folder (scene/building.h has its forms) */
     BuildingUnits units;
     DampingModel damping_model;
@@ -44,8 +48,8 @@ typedef struct {
     double yield_drift; /* [-] of the storey's height; 0: a storey yields only where the files say so */
     double hardening;   /* [-] share of a storey's stiffness that is left where it has yielded */
     Hysteresis hysteresis;
-    double bouc_wen_exponent;                           /* [-] */
-    double strength_degradation, stiffness_degradation; /* [-] per energy, sim/storey.h */
+    double bouc_wen_exponent; /* [-] */
+    DegradationOptions degradation;
 } BuildingOptions;
 
 #define CORE_SECTION_LIST(X) X(CORE_BOX, "box") X(CORE_PLATE, "plate") X(CORE_EFFECTIVE, "effective")

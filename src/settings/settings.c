@@ -61,6 +61,7 @@ typedef char OptionText[OPTION_TEXT_MAX];
 /* In the order of PriceOptions, RepairOptions, UncertainOptions. */
 enum { SHARES_MAX = 7 };
 static const char REPAIR_WORDS[] = "structure|drift_sensitive|acceleration_sensitive";
+static const char DEGRADATION_WORDS[] = "strength|stiffness";
 static const char PRICE_WORDS[] = "gap|bumper|link|tuned_mass_t|core_t|anchor_mn";
 static const char UNCERTAIN_WORDS[] =
     "restitution|contact_stiffness|core_stiffness|building_stiffness|damping|ground_stiffness|strength";
@@ -98,9 +99,9 @@ static const Option OPTIONS[] = {
            "law of storeys that yield: bilinear; bouc_wen: rounded, and it may degrade"),
     REAL(building.bouc_wen_exponent, "-", "10", 0.1, 100,
          "bouc_wen: sharpness of yielding; a large number is nearly bilinear"),
-    REAL(building.strength_degradation, "-", "0", 0, 10,
-         "bouc_wen: loss of strength for an input of twice the elastic energy at yield (docs/theory.md)"),
-    REAL(building.stiffness_degradation, "-", "0", 0, 10, "bouc_wen: loss of stiffness, in the same way"),
+    SHARES(building.degradation, DegradationOptions, DEGRADATION_WORDS, 10, "none",
+           "bouc_wen: losses for an input of twice the elastic energy at yield, such as strength=0.02 stiffness=0.05 "
+           "(docs/theory.md)"),
 
     PATH(core.model, "none", "none|guyan|appendix",
          "another building in place of the core, a neighbour that pounds: values of building.model, with no more "
@@ -140,8 +141,7 @@ static const Option OPTIONS[] = {
     REAL(contact.restitution, "-", "0.7", 0, 1, "coefficient of restitution r of the contact law",
          .flags = SETTING_BASIC),
     REAL(contact.radius_m, "m", "0.1", 1e-6, 1e3, "radius of the contacting body"),
-    REAL(contact.youngs_modulus_pa, "Pa", "2.1e11", 1, 1e14, "Young's modulus of both bodies"),
-    REAL(contact.poisson, "-", "0.3", 0, 0.5, "Poisson's ratio of both bodies"),
+    REAL(contact.youngs_modulus_pa, "Pa", "2.1e11", 1, 1e14, "Young's modulus of both bodies, of Poisson's ratio 0.3"),
     REAL(contact.bumper_stiffness_n_m, "N/m", "0", 0, 1e14,
          "stiffness of a bumper in series with the steel, at every floor and side; 0: none, steel on steel"),
     REAL(contact.bumper_damping, "-", "0.1", 0, 0.9, "damping ratio of the bumper (docs/theory.md)"),
@@ -543,16 +543,19 @@ int settings_gives(const Settings *s, const char *key)
  * still has the value that they are computed with now. */
 static const struct {
     const char *key;
-    double value; /* 0: any */
+    double value; /* NAN: any */
     const char *note;
 } FORMER[] = {
-    {"search.asynchronous", 0, "every search looks ahead (search.ahead)"},
-    {"search.generations", 0, "search.max_evals limits a search"},
-    {"search.blas", 0, "OPENBLAS_CORETYPE in the environment chooses other kernels"},
-    {"search.nondominated_share", 0, "search.stop_after ends a search that gains nothing"},
-    {"problem.noise", 0, "textbook problems are in imtet-bench"},
+    {"search.asynchronous", NAN, "every search looks ahead (search.ahead)"},
+    {"search.generations", NAN, "search.max_evals limits a search"},
+    {"search.blas", NAN, "OPENBLAS_CORETYPE in the environment chooses other kernels"},
+    {"search.nondominated_share", NAN, "search.stop_after ends a search that gains nothing"},
+    {"problem.noise", NAN, "textbook problems are in imtet-bench"},
     {"contact.v0_min_m_s", 1e-3, "the contact law is never given an approach speed below 1e-3 m/s"},
     {"contact.yield_stress_pa", 3.45e8, "contact_yields is of steel of 345 MPa; contact_pressure_pa says it of any"},
+    {"contact.poisson", 0.3, "it is 0.3; contact.youngs_modulus_pa times 0.91/(1 - nu^2) is a contact of another nu"},
+    {"building.strength_degradation", 0, "building.degradation = strength=0.02 holds it"},
+    {"building.stiffness_degradation", 0, "building.degradation = stiffness=0.05 holds it"},
 };
 
 static size_t find_former(const char *key)
@@ -566,7 +569,7 @@ static size_t find_former(const char *key)
 int table_passes(const char *key, const char *value)
 {
     const size_t i = find_former(key);
-    return i < N_OF(FORMER) && (FORMER[i].value == 0 || strtod(value, NULL) == FORMER[i].value);
+    return i < N_OF(FORMER) && (isnan(FORMER[i].value) || strtod(value, NULL) == FORMER[i].value);
 }
 
 Status table_find(const char *key, int *found, Err *err)

@@ -98,7 +98,7 @@ double contact_bumper_stored(const Contact *c, double p)
 
 Status contact_make(Contact *c, const ContactOptions *o, Err *err)
 {
-    const double r = o->restitution, nu = o->poisson;
+    const double r = o->restitution;
     const ContactLaw law = o->law;
     if (r < 0.01 && (law == LAW_EXACT || law == LAW_FLORES || law == LAW_JANKOWSKI))
         return bad_data(
@@ -106,7 +106,7 @@ Status contact_make(Contact *c, const ContactOptions *o, Err *err)
             "contact.restitution: %g cannot be had with this contact.law (its damping grows without bound); use "
             "0.01 or more, or contact.law = paper",
             r);
-    c->k = 2 * o->youngs_modulus_pa * sqrt(o->radius_m) / (3 * (1 - nu * nu));
+    c->k = 2 * o->youngs_modulus_pa * sqrt(o->radius_m) / (3 * PLANE_STRAIN);
     c->a = c->xi = c->xi_above = 0;
     switch (law) {
     case LAW_PAPER:

@@ -1,7 +1,7 @@
 /* sim/contact.h -- the force between a floor and the core while they are in contact.
  *
  *   F = k p^1.5 (1 + a p'/v0) + c p',  F >= 0,  p > 0 indentation [m],  v0 approach speed at the onset of contact [m/s]
- *   k = 2 E sqrt(R) / (3 (1 - nu^2))                                                                      [N/m^1.5]
+ *   k = 2 E sqrt(R) / (3 (1 - nu^2)),  nu = 0.3                                                           [N/m^1.5]
  *
  *   paper                a = 1.5 (1 - r). An isolated impact then rebounds not with r but with e from
  *                        a (1+e) = ln((1+a)/(1-a e)).
@@ -41,6 +41,8 @@ typedef struct {
     double bumper;   /* [N/m] k_b; 0: none */
     double bumper_a; /* [-] a_b */
 } Contact;
+
+static const double PLANE_STRAIN = 1 - 0.3 * 0.3; /* [-] 1 - nu^2 */
 
 /* With the bumper of the options. */
 Status contact_make(Contact *c, const ContactOptions *o, Err *err);

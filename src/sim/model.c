@@ -126,7 +126,7 @@ Status model_set(SimModel *model, const SceneOptions *o, const Building *b, cons
     /* Storeys and contacts. */
     model->yields = b->yields;
     model->storey_law = (StoreyLaw){o->building.hysteresis, o->building.bouc_wen_exponent,
-                                    o->building.strength_degradation, o->building.stiffness_degradation};
+                                    o->building.degradation.strength, o->building.degradation.stiffness};
     for (int j = 0; j < n; j++) {
         model->yield_m[j] = b->yield_m[j] > 0 ? b->yield_m[j] : 1e300;
         model->yield_n_m[j] = b->yield_n_m[j];

@@ -15,7 +15,7 @@ typedef enum { CONTACT_LAW_LIST(CHOICE_NAME) } ContactLaw;
 
 typedef struct {
     ContactLaw law;
-    double restitution, radius_m, youngs_modulus_pa, poisson;
+    double restitution, radius_m, youngs_modulus_pa;
     double bumper_stiffness_n_m; /* 0: none */
     double bumper_damping;       /* [-] damping ratio */
     double bumper_thickness_m, bumper_strain_max;
