@@ -75,7 +75,7 @@ export async function openBrowser({ program = "chromium", width = 1360, height =
     });
 
     // Until the expression is true; it is asked every 20 ms, within the page: asking from here costs more.
-    async function until(expression, seconds = 60) {
+    async function until(expression, seconds = 240) {
       const end = Date.now() + 1000 * seconds;
       while (!(await isTrue(expression))) {
         if (Date.now() > end) throw new Error(`never came true: ${expression}`);

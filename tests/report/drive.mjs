@@ -209,8 +209,12 @@ const tried = {
   },
   async "any two columns are plotted against each other, a box there selects"() {
     await page.evaluate(`(() => { for (const [id, k] of [["x", ${results.length}], ["y", 0]]) { const e = document.getElementById(id); e.selectedIndex = k; e.dispatchEvent(new Event("change")); } })()`);
-    await settle(); await drag(await boxOf("g.panel .brush .overlay", 0), [0.02, 0.98], [0.6, 0.3]);
-    const text = await downloaded(), chosen = all.filter((i) => text.includes(`\n${lines[i]}\n`)), ranges = new URLSearchParams((await page.evaluate("location.hash")).slice(1)).get("in") ?? "";
+    let ranges = "";
+    for (let tries = 0; tries < 4 && !ranges; tries++) { // a panel that is drawn anew under the pointer takes no box
+      await settle(); await drag(await boxOf("g.panel .brush .overlay", 0), [0.02, 0.98], [0.6, 0.3]);
+      ranges = new URLSearchParams((await page.evaluate("location.hash")).slice(1)).get("in") ?? "";
+    }
+    const text = await downloaded(), chosen = all.filter((i) => text.includes(`\n${lines[i]}\n`));
     assert.ok(ranges.includes(run.schema.variables[0]) && ranges.includes(run.schema.objectives[0].name), ranges);
     assert.equal(chosen.length, await counted());
     await click("#clear");
@@ -359,7 +363,7 @@ const tried = {
     }
     for (const width of [800, 420, 1360]) {
       await page.call("Emulation.setDeviceMetricsOverride", { width, height: 900, deviceScaleFactor: 1, mobile: false });
-      await page.until(`document.documentElement.scrollWidth <= ${width}`, 5); // it is laid out again
+      await page.until(`document.documentElement.scrollWidth <= ${width}`); // it is laid out again
     }
   },
   async "it prints"() {
