@@ -29,28 +29,35 @@ static inline void energy_balance_sum_shares(SimResult *result)
         result->ed5_10_pct += result->mode_share_pct[i];
 }
 
-/* From the joules already in result (input, kinetic_strain, contacts) and damped[nb + nc], building modes first, their
- * shares booked as like[nb] says. by_ground: of a mat that lifts, beside them. */
+/* All shares, from the joules in result and damped[nb] of the building's modes, booked as like[nb] says. */
+static inline void energy_balance_shares(SimResult *result, int nb, const int like[], const double damped[])
+{
+    const double input = result->input_energy_j;
+    for (int i = 0; i < nb; i++)
+        if (like[i] >= 0)
+            result->mode_share_pct[like[i]] += energy_share(damped[i], input);
+    energy_balance_sum_shares(result);
+    result->edcs_pct = energy_share(result->damped_core_j, input);
+    result->ed_hysteresis_pct = energy_share(result->hysteresis_j, input);
+    result->ed_devices_pct = energy_share(result->device_loss_j, input);
+}
+
+/* From the joules already in result (input, kinetic_strain, contacts) and damped[nb + nc], building modes first.
+ * by_ground: of a mat that lifts, beside them. */
 static inline void energy_balance_close(SimResult *result, int nb, const int like[], int nc, const double damped[],
                                         double by_ground)
 {
     double building = nc > 0 ? 0 : by_ground, core = nc > 0 ? by_ground : 0;
     const double input = result->input_energy_j;
-    for (int i = 0; i < nb; i++) {
+    for (int i = 0; i < nb; i++)
         building += damped[i];
-        if (like[i] >= 0)
-            result->mode_share_pct[like[i]] += energy_share(damped[i], input);
-    }
     for (int i = nb; i < nb + nc; i++)
         core += damped[i];
     result->damped_building_j = building;
     result->damped_core_j = core;
-    energy_balance_sum_shares(result);
-    result->edcs_pct = energy_share(core, input);
+    energy_balance_shares(result, nb, like, damped);
     const double out = result->kinetic_strain_j + building + core + result->contact_stored_j + result->contact_loss_j +
                        result->clamp_j + result->hysteresis_j + result->device_loss_j;
-    result->ed_hysteresis_pct = energy_share(result->hysteresis_j, input);
-    result->ed_devices_pct = energy_share(result->device_loss_j, input);
     result->energy_balance_error = fabs(input - out) / energy_balance_scale(input, out);
     if (!isfinite(input - out)) {
         result->outcome = RUN_NOT_FINITE;

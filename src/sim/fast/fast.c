@@ -28,44 +28,16 @@ static void layout_flight(FlightScratch *f, Carve *c, size_t modes, size_t floor
                &f->a0, &f->a0_dot, &f->a1, &f->a1_dot, &f->error_u, &f->error_core, &f->error_a, &f->reach_a);
 }
 
-static void layout_contact(ContactScratch *s, Carve *c, size_t modes, size_t floors)
-{
-    CARVE_EACH(c, modes, &s->bubble, &s->middle_q, &s->middle_a, &s->end_a, &s->bend_q, &s->bend_a, &s->bound_q,
-               &s->bound_a);
-    CARVE_EACH(c, floors, &s->missed);
-    for (int i = 0; i < 9; i++)
-        CARVE_EACH(c, floors, &s->sample[i / 3][i % 3]);
-}
-
-static void layout_storeys(StoreyScratch *s, Carve *c, size_t modes, size_t floors)
-{
-    CARVE_EACH(c, floors, &s->per_yield, &s->stiff, &s->slope, &s->bend, &s->work, &s->work_next, &s->beside);
-    CARVE_EACH(c, modes, &s->load, &s->bubble);
-    CARVE_EACH(c, floors * KINKS_MAX, &s->kink);
-}
-
-static void layout_reach(ReachScratch *r, Carve *c, size_t modes, size_t floors)
-{
-    CARVE_EACH(c, modes, &r->bound_q, &r->bound_a);
-    CARVE_EACH(c, floors, &r->u, &r->drift, &r->a, &r->core);
-}
-
-static void layout_level(Level *l, Carve *c, size_t rows, size_t modes, size_t channels)
-{
-    CARVE_EACH(c, FLOW_ROWS * modes, &l->coef);
-    CARVE_EACH(c, modes, &l->slow, &l->kappa, &l->kappa_accel, &l->cubic, &l->parabola, &l->parabola_accel);
-    l->compliance = carve(c, COMPLIANCES * rows * channels, sizeof(double));
-    l->compliance_pair = carve(c, rows * rows, sizeof(v4));
-    CARVE_EACH(c, channels, &l->own);
-}
-
 static int padded(int n)
 {
     return (n + PAD - 1) / PAD * PAD;
 }
 
-static void layout(FastWork *k, Carve *c)
+static void layout(void *work, Carve *c)
 {
+    FastWork *k = work;
+    ContactScratch *in_contact = &k->contact;
+    StoreyScratch *s = &k->storeys;
     const size_t n = (size_t)k->n, floors = (size_t)k->n_pad, modes = (size_t)k->m_max;
     const size_t points = (size_t)padded(POINTS_OF(k->n));
     const size_t channels = (k->may_yield ? 2 * floors : floors) + (size_t)padded(k->devices_max);
@@ -79,9 +51,16 @@ static void layout(FastWork *k, Carve *c)
     layout_state(&k->now, c, modes, channels);
     layout_state(&k->next, c, modes, channels);
     layout_flight(&k->flight, c, modes, points);
-    layout_contact(&k->contact, c, modes, points);
-    layout_storeys(&k->storeys, c, modes, floors);
-    layout_reach(&k->reach, c, modes, points);
+    CARVE_EACH(c, modes, &in_contact->bubble, &in_contact->middle_q, &in_contact->middle_a, &in_contact->end_a,
+               &in_contact->bend_q, &in_contact->bend_a, &in_contact->bound_q, &in_contact->bound_a);
+    CARVE_EACH(c, points, &in_contact->missed);
+    for (int i = 0; i < 9; i++)
+        CARVE_EACH(c, points, &in_contact->sample[i / 3][i % 3]);
+    CARVE_EACH(c, floors, &s->per_yield, &s->stiff, &s->slope, &s->bend, &s->work, &s->work_next, &s->beside);
+    CARVE_EACH(c, modes, &s->load, &s->bubble);
+    CARVE_EACH(c, floors * KINKS_MAX, &s->kink);
+    CARVE_EACH(c, modes, &k->reach.bound_q, &k->reach.bound_a);
+    CARVE_EACH(c, points, &k->reach.u, &k->reach.drift, &k->reach.a, &k->reach.core);
     CARVE_EACH(c, modes, &k->record.q, &k->record.v, &k->record.ground_work, &k->record.contact_work, &k->record.damped,
                &k->record.most, &k->record.per_most);
     CARVE_EACH(c, floors, &k->record.force, &k->record.plastic);
@@ -91,47 +70,38 @@ static void layout(FastWork *k, Carve *c)
         CARVE_EACH(c, modes, &k->record.batch_q[i]);
         CARVE_EACH(c, points, &k->record.batch_u[i]);
     }
-    k->R = carve(c, modes * floors, sizeof(double));
-    k->flex = carve(c, n * floors, sizeof(double));
-    k->R_abs = carve(c, modes * floors, sizeof(double));
+    CARVE(c, k->R, modes * floors);
+    CARVE(c, k->flex, n * floors);
+    CARVE(c, k->R_abs, modes * floors);
     CARVE_EACH(c, modes * points, &k->D_abs);
     for (int i = 0; i < 3; i++)
         CARVE_EACH(c, modes * points, &k->room[i]);
-    k->RT = carve(c, modes * channels, sizeof(double));
+    CARVE(c, k->RT, modes * channels);
     k->E_room = channels > floors ? carve(c, modes * channels, sizeof(double)) : k->R;
-    k->newton_g = carve(c, rows * rows, sizeof(m22));
-    k->newton_LU = carve(c, rows * rows, sizeof(m22));
-    for (int i = 0; i <= LEVEL_MAX; i++)
-        layout_level(&k->level[i], c, rows, modes, channels);
+    CARVE(c, k->newton_g, rows * rows);
+    CARVE(c, k->newton_LU, rows * rows);
+    for (Level *l = k->level; l <= k->level + LEVEL_MAX; l++) {
+        CARVE_EACH(c, FLOW_ROWS * modes, &l->coef);
+        CARVE_EACH(c, modes, &l->slow, &l->kappa, &l->kappa_accel, &l->cubic, &l->parabola, &l->parabola_accel);
+        CARVE(c, l->compliance, COMPLIANCES * rows * channels);
+        CARVE(c, l->compliance_pair, rows * rows);
+        CARVE_EACH(c, channels, &l->own);
+    }
 }
 
 Status fast_create(FastWork **out, int n_floors, int nb, int yields, int devices, Err *err)
 {
-    *out = NULL;
-    FastWork *k = calloc(1, sizeof *k);
-    if (!k)
-        return fail(err, STATUS_NO_MEMORY, "fast: no memory for its work space");
-    k->n = n_floors;
-    k->n_pad = padded(n_floors);
-    k->m_max = padded(nb) + padded(n_floors + (devices > 0));
-    k->may_yield = yields;
-    k->devices_max = devices;
-    Carve count = {0};
-    layout(k, &count);
-    k->store = carve_store(&count);
-    if (!k->store) {
-        free(k);
-        return fail(err, STATUS_NO_MEMORY, "fast: no memory for %zu bytes of work space", count.used);
-    }
-    layout(k, &(Carve){.base = k->store});
-    *out = k;
-    return STATUS_OK;
+    FastWork plain = {.n = n_floors,
+                      .n_pad = padded(n_floors),
+                      .m_max = padded(nb) + padded(n_floors + (devices > 0)),
+                      .may_yield = yields,
+                      .devices_max = devices};
+    *out = carve_object(layout, &plain, sizeof plain);
+    return *out ? STATUS_OK : fail_memory(err, n_floors, "floors");
 }
 
 void fast_free(FastWork *work)
 {
-    if (work)
-        free(work->store);
     free(work);
 }
 
@@ -210,21 +180,6 @@ FastTolerances fast_tolerances(Accuracy accuracy)
     return TOLERANCES[accuracy];
 }
 
-/* Of an accuracy with so many times the steps per contact, and tolerances to match. */
-static FastTolerances refined(Accuracy accuracy, double times)
-{
-    FastTolerances tolerances = fast_tolerances(accuracy);
-    tolerances.steps_per_contact *= times;
-    tolerances.solver_tolerance /= times * times;
-    tolerances.energy_tolerance /= times * times * times;
-    tolerances.device_error /= times * times * times * times;
-    tolerances.peak_tolerance /= times;
-    tolerances.flexibility_left_out /= times * times;
-    tolerances.tail_tolerance /= times * times;
-    tolerances.tail_share /= times * times;
-    return tolerances;
-}
-
 void fast_run(FastWork *work, const SimModel *model, const Motion *motion, const EngineOptions *options,
               const FastTolerances *tolerances, SimResult *result)
 {
@@ -264,7 +219,16 @@ static FastTolerances tolerances_of(const EngineOptions *options, int lifts)
         times *= options->steps_per_contact / tolerances.steps_per_contact;
     if (options->tolerance > 0 && options->accuracy != ACCURACY_FINE)
         times *= options->tolerance / tolerances.steps_per_contact;
-    tolerances = refined(options->accuracy, times);
+
+    /* So many times the steps per contact, and tolerances to match. */
+    tolerances.steps_per_contact *= times;
+    tolerances.solver_tolerance /= times * times;
+    tolerances.energy_tolerance /= times * times * times;
+    tolerances.device_error /= times * times * times * times;
+    tolerances.peak_tolerance /= times;
+    tolerances.flexibility_left_out /= times * times;
+    tolerances.tail_tolerance /= times * times;
+    tolerances.tail_share /= times * times;
     if (options->tolerance > 0 && options->accuracy == ACCURACY_FINE)
         tolerances.steps_per_contact = options->tolerance;
     return tolerances;

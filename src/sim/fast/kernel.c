@@ -4,6 +4,7 @@
 #include "sim/fast/kernel.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <string.h>
 
 #include "base/units.h"
@@ -73,16 +74,6 @@ static inline int beside_points(const FastWork *k)
 #include "sim/fast/storey_peaks.inc"
 #include "sim/fast/contact_step.inc"
 
-/* The level whose step is the wanted share of the shortest Hertz contact at the present speed (or the finest). */
-static int resolving_level(const FastWork *k, double gain)
-{
-    const double speed = k->speed + gain;
-    int level = 0;
-    while (level < LEVEL_MAX && speed > k->level[level].speed_max)
-        level++;
-    return level;
-}
-
 /* What the energy of one step's error is measured by: the input so far. */
 static double energy_scale(const FastWork *k)
 {
@@ -105,10 +96,9 @@ static int onset_ahead(const FastWork *k, double h)
  * TICKS >> L of them and begins at a multiple of that, so that every step length is one of LEVEL_MAX + 1. */
 static const uint32_t TICKS = UINT32_C(1) << LEVEL_MAX;
 typedef struct {
-    double start;      /* [s] */
-    double a0, a1;     /* [m/s2] of the ground at both ends, linear between them */
-    uint32_t at;       /* ticks that have passed */
-    double speed_gain; /* [m/s] that the ground may add to the speed of the gaps */
+    double start;  /* [s] */
+    double a0, a1; /* [m/s2] of the ground at both ends, linear between them */
+    uint32_t at;   /* ticks that have passed */
 } Interval;
 
 static double ground_at(const Interval *in, uint32_t tick)
@@ -158,16 +148,6 @@ static int fly_on(FastWork *k, Interval *in, int resolving)
     return 0;
 }
 
-/* Where the next contact step is tried: as long as the last one, where no gap is about to close in it. */
-static void set_contact_level(FastWork *k, int resolving)
-{
-    const int is_fixed = k->tolerances->energy_tolerance == 0 && (n_devices(k) == 0 || k->in_contact);
-    if (k->contact_level > resolving || is_fixed)
-        k->contact_level = resolving;
-    while (k->contact_level < resolving && k->state_valid && onset_ahead(k, ldexp(k->base, -k->contact_level)))
-        k->contact_level++;
-}
-
 /* Where several floors meet the core at once the error of one contact is passed on to the others, and grows from impact
  * to impact. A floor counts if it touches the core or may within so long at its present speed [s]. Steps are halved
  * where FastTolerances.crowd floors count, again at twice and at four times as many, and what a step may miss of the
@@ -200,7 +180,13 @@ static int step_on(FastWork *k, Interval *in, int resolving)
     if (resolving > LEVEL_MAX)
         resolving = LEVEL_MAX;
     k->flight_level = resolving > 0 ? resolving - 1 : 0;
-    set_contact_level(k, resolving);
+
+    /* First as long as the last one, where no gap is about to close in it. */
+    const int is_fixed = k->tolerances->energy_tolerance == 0 && (n_devices(k) == 0 || k->in_contact);
+    if (k->contact_level > resolving || is_fixed)
+        k->contact_level = resolving;
+    while (k->contact_level < resolving && k->state_valid && onset_ahead(k, ldexp(k->base, -k->contact_level)))
+        k->contact_level++;
     for (int level = later(k->contact_level, aligned_level(in)); level <= LEVEL_MAX; level++) {
         const uint32_t end = in->at + (TICKS >> level);
         set_push(k, 1, end);
@@ -219,20 +205,17 @@ static const double SPEED_GAIN = 0.1;
 /* One sampling interval from `start` [s] on, ground acceleration from a0 to a1; 0 when no step is short enough. */
 static int interval(FastWork *k, double start, double a0, double a1)
 {
-    Interval in = {.start = start,
-                   .a0 = a0,
-                   .a1 = a1,
-                   .speed_gain = SPEED_GAIN * k->base * (fmax(fabs(a0), fabs(a1)) + k->push_accel)};
-    const int has_core = k->m_pad > k->nb_pad;
+    const double gain = SPEED_GAIN * k->base * (fmax(fabs(a0), fabs(a1)) + k->push_accel);
+    Interval in = {.start = start, .a0 = a0, .a1 = a1};
     k->energy_scale = energy_scale(k);
     while (in.at < TICKS) {
         if ((double)(k->steps + k->flights) > k->tolerances->steps_max)
             return 0;
-        const int resolving = later(has_core                        ? resolving_level(k, in.speed_gain)
-                                    : yields(k) || n_devices(k) > 0 ? 0
-                                                                    : LEVEL_MAX,
-                                    k->yielding_level);
-        const int longest = has_core || yields(k) ? resolving : LEVEL_MAX;
+        /* The level whose step is the wanted share of the shortest Hertz contact at this speed, or the finest. */
+        int resolving = has_core(k) || yields(k) || n_devices(k) > 0 ? k->yielding_level : LEVEL_MAX;
+        for (int level = 0; has_core(k) && level < LEVEL_MAX && k->speed + gain > k->level[level].speed_max; level++)
+            resolving = later(resolving, level + 1);
+        const int longest = has_core(k) || yields(k) ? resolving : LEVEL_MAX;
         if (!(!k->in_contact && !k->yielding && !devices_act(k) && fly_on(k, &in, longest)) &&
             !step_on(k, &in, resolving))
             return 0;
@@ -247,10 +230,7 @@ static int state_is_finite(const FastWork *k)
     vec sum = {0};
     for (int i = 0; i < k->mf; i++)
         sum += k->now.q[i] * 0.0 + k->now.v[i] * 0.0;
-    double all = 0;
-    for (int lane = 0; lane < LANES; lane++)
-        all += sum[lane];
-    return all == 0;
+    return lanes_sum(sum) == 0;
 }
 
 typedef struct {
@@ -363,44 +343,36 @@ static const double SHARE_MIN = 1e-3;
 /* [J] Of what the first mode, modes 5 to 10 and the core have dissipated so far. */
 static double smallest_share(const FastWork *k)
 {
-    double share[3] = {0}, energy = 0, least;
+    double share[3] = {0}, energy = 0;
     for (int i = 0; i < k->m_pad; i++) {
         const int like = i < k->model->nb ? k->model->like[i] : -1;
         const int group = i >= k->nb_pad ? 2 : like == 0 ? 0 : like >= 4 && like < 10 ? 1 : -1;
         if (group >= 0)
             share[group] += damped_by(k, i, &energy);
     }
-    least = fmin(share[0], share[2]);
-    if (k->model->nb > 4)
-        least = fmin(least, share[1]);
-    return fmax(least, SHARE_MIN * energy_scale(k));
-}
-
-/* Impacts grow errors while peaks are to come; later they change the shares alone, and those by no more than their part
- * of the energy that is left: what a step may miss grows as it falls below the largest so far, a thousandfold at most.
- */
-static double calm_of(const FastWork *k, double left)
-{
-    return k->tolerances->calms_down && left < k->most_energy ? fmin(k->most_energy / left, 1e3) : 1;
+    const double least = fmin(share[0], share[2]);
+    return fmax(k->model->nb > 4 ? fmin(least, share[1]) : least, SHARE_MIN * energy_scale(k));
 }
 
 /* About the state of rest under the plastic drifts. */
 static double twice_energy_about_rest(const FastWork *k)
 {
     vec sum = {0};
-    for (int i = 0; yields(k) && i < k->mf; i++) {
-        const vec q = k->now.q[i] - k->held[i] * k->flexibility[i];
+    for (int i = 0; i < k->mf; i++) {
+        const vec q = yields(k) ? k->now.q[i] - k->held[i] * k->flexibility[i] : k->now.q[i];
         sum += k->now.v[i] * k->now.v[i] + k->omega[i] * k->omega[i] * q * q;
     }
-    return yields(k) ? lanes_sum(sum) : twice_energy(k, &k->now, 0, k->mf);
+    return lanes_sum(sum);
 }
 
 /* Bouc-Wen flows at any drift: of what the drifts still move, no more than this share is left out. */
 static const double SETTLED_FLOW = 0.05;
 
-/* Can a storey yield once more with so much energy [J] about rest? |d| <= sqrt(2 E sum D_i^2 / w_i^2) */
-static int storeys_may_yield(FastWork *k, double energy)
+/* Can a storey yield once more, or the mat lift, with so much energy [J] about rest?
+ * |d| <= sqrt(2 E sum D_i^2 / w_i^2) */
+static int may_go_on(FastWork *k, double energy)
 {
+    double of_mat = 0;
     const StoreyLaw *law = &k->model->storey_law;
     const double *D = k->E + k->n_pad;
     const double share = law->kind == HYSTERESIS_BILINEAR ? 1 : pow(SETTLED_FLOW, 1 / law->exponent);
@@ -413,16 +385,9 @@ static int storeys_may_yield(FastWork *k, double energy)
         if (sqrt(2 * energy * soft) + scalars_const(k->rest)[j] > share * k->model->yield_m[j])
             return 1;
     }
-    return 0;
-}
-
-/* Can the mat lift with so much energy [J]? */
-static int mat_may_lift(const FastWork *k, double energy)
-{
-    double soft = 0;
     for (int i = 0; may_lift(k) && i < k->m_pad; i++)
-        soft += pow(scalars_const(mat_row(k))[i], 2) * scalars_const(k->flexibility)[i];
-    return may_lift(k) && sqrt(2 * energy * soft) > mat_of(k)->theta_up;
+        of_mat += pow(scalars_const(mat_row(k))[i], 2) * scalars_const(k->flexibility)[i];
+    return may_lift(k) && sqrt(2 * energy * of_mat) > mat_of(k)->theta_up;
 }
 
 /* Is so little energy left, and to come from sample i of the motion on, that contacts can change no result? Notes how
@@ -430,13 +395,17 @@ static int mat_may_lift(const FastWork *k, double energy)
 static int is_settled(FastWork *k, const Motion *motion, long i)
 {
     const double *input = k->options->tail_input;
-    if (!input || k->m_pad == k->nb_pad)
+    if (!input || !has_core(k))
         return 0;
     const double energy = 0.5 * twice_energy_about_rest(k);
     k->most_energy = larger(energy, k->most_energy);
     const double root = sqrt(energy) + sqrt(i < (long)motion->n ? k->mass_ratio * input[i] : 0), left = root * root;
-    k->calm = calm_of(k, left);
-    return !k->in_contact && !devices_act(k) && !storeys_may_yield(k, left) && !mat_may_lift(k, left) &&
+
+    /* Impacts grow errors while peaks are to come; later they change the shares alone, and those by no more than their
+     * part of the energy that is left: what a step may miss grows as it falls below the largest so far, a thousandfold
+     * at most. */
+    k->calm = k->tolerances->calms_down && left < k->most_energy ? fmin(k->most_energy / left, 1e3) : 1;
+    return !k->in_contact && !devices_act(k) && !may_go_on(k, left) &&
            left <= k->tolerances->tail_tolerance * energy_scale(k) && left <= PEAK_ENERGY * k->most_energy &&
            (k->tolerances->tail_share == 0 || left <= k->tolerances->tail_share * smallest_share(k));
 }
@@ -512,23 +481,13 @@ static int integrate(FastWork *k, const Motion *motion, double duration)
         enter_forces(k, motion, full, rest / motion->dt_s);
         k->sample_level = 0;
         const double end = a.start + (a.end - a.start) * rest / motion->dt_s;
-        stop_holding(k);
-        if (k->settled < duration) /* contacts have ended: floors may be deep inside the core */
+        k->record.memory = k->record.n_held = 0; /* flights are no longer held */
+        if (k->settled < duration)               /* contacts have ended: floors may be deep inside the core */
             settle(k, duration - rest, (Ramp){a.start, end}, end);
         else if (!interval(k, duration - rest, a.start, end))
             return 0;
     }
     return state_is_finite(k);
-}
-
-static double still_stored(const FastWork *k)
-{
-    double stored = 0;
-    for (int j = 0; j < k->n; j++)
-        if (k->side[j])
-            stored +=
-                contact_stored(&k->model->contact[j], fabs(scalars_const(k->now.w)[j]) - scalars_const(k->gap)[j]);
-    return stored;
 }
 
 /* Plastic drifts and hysteresis; returns what the storeys have taken from the modes [J]: hysteresis less what the modes
@@ -562,8 +521,14 @@ static void report_energies(FastWork *k, SimResult *r)
     }
     r->contact_loss_j = k->contact_lost;
     r->clamp_j = k->contact_clamped;
-    r->contact_stored_j = still_stored(k);
-    const double held = held_by_devices(k), of_mat = held_by_mat(k);
+    for (int j = 0; j < k->n; j++)
+        if (k->side[j])
+            r->contact_stored_j +=
+                contact_stored(&k->model->contact[j], fabs(scalars_const(k->now.w)[j]) - scalars_const(k->gap)[j]);
+    double held = 0; /* by springs of devices */
+    for (int e = 0; e < n_devices(k) - may_lift(k); e++)
+        held += 0.5 * k->model->device[e].stiffness * pow(scalars_const(k->now.w)[k->at_device + e], 2);
+    const double of_mat = held_by_mat(k);
     r->device_loss_j = k->device_taken - held;
     r->kinetic_strain_j += held + of_mat;
     *(k->nc > 0 ? &r->damped_core_j : &r->damped_building_j) += k->mat[MAT_WORK] - of_mat;
@@ -573,20 +538,7 @@ static void report_energies(FastWork *k, SimResult *r)
                                 k->device_taken - k->mat[MAT_WORK] - (yields(k) ? report_storeys(k, r) : 0);
     const double scale = energy_balance_scale(r->input_energy_j, r->input_energy_j - energy_error);
     r->energy_balance_error = fabs(energy_error) / scale + sqrt(missed / (2 * scale));
-    for (int i = 0; i < k->model->nb; i++)
-        if (k->model->like[i] >= 0)
-            r->mode_share_pct[k->model->like[i]] += energy_share(damped[i], r->input_energy_j);
-    energy_balance_sum_shares(r);
-    r->edcs_pct = energy_share(r->damped_core_j, r->input_energy_j);
-    r->ed_hysteresis_pct = energy_share(r->hysteresis_j, r->input_energy_j);
-    r->ed_devices_pct = energy_share(r->device_loss_j, r->input_energy_j);
-}
-
-static void report_peaks(const FastWork *k, SimResult *r)
-{
-    model_report_peaks(
-        k->model,
-        (const double *const[]){scalars_const(k->peak_u), scalars_const(k->peak_d), scalars_const(k->peak_a), NULL}, r);
+    energy_balance_shares(r, k->model->nb, k->model->like, damped);
 }
 
 FastKernel FAST_KERNEL;
@@ -606,7 +558,10 @@ void FAST_KERNEL(FastWork *k, const SimModel *model, const Motion *motion, const
     result->n_modes = model->n;
     if (!arrived)
         result->outcome = state_is_finite(k) ? RUN_OUT_OF_STEPS : RUN_NOT_FINITE;
-    report_peaks(k, result);
+    model_report_peaks(
+        model,
+        (const double *const[]){scalars_const(k->peak_u), scalars_const(k->peak_d), scalars_const(k->peak_a), NULL},
+        result);
     report_energies(k, result);
     result->impacts = k->impacts;
     memcpy(result->closings, k->closings, (size_t)model->n * sizeof *k->closings);

@@ -128,7 +128,6 @@ typedef struct {
 } RecordScratch;
 
 typedef struct FastWork {
-    void *store;
     const SimModel *model;
     const EngineOptions *options;
     const FastTolerances *tolerances;
@@ -167,48 +166,51 @@ typedef struct FastWork {
 
     /* the motion so far */
     State now, next;
-    vec *held;          /* (m_pad) modal load of the plastic drifts at the start of the step */
-    vec *rest;          /* (n_pad) [m] |z| of the storeys at rest under it */
-    int yielding_level; /* of the steps in which storeys yield, at least: steps are of a fixed share at fine */
-    double storey_rate; /* [1/s2] times the square of a step: what the other storeys change of one, at most */
-    int yielding;       /* some storey did in the last step */
-    int lifting;        /* the mat of the core was up, or its cone moved, at the end of the last step: */
-    double mat[MAT_STATES], mat_turned; /* there; [rad] the most so far */
-    double hysteresis;                  /* [J] */
-    m22 *newton_g, *newton_LU;          /* (rows, rows) of Active */
-    double LU_of;                  /* [s] the step whose matrix of linear devices alone newton_LU is; 0: it is not */
-    int are_linear;                /* all devices */
-    vec *bubble;                   /* (c_pad) [N] of the contact forces over the step under way */
+    vec *held;                 /* (m_pad) modal load of the plastic drifts at the start of the step */
+    vec *rest;                 /* (n_pad) [m] |z| of the storeys at rest under it */
+    int yielding_level;        /* of the steps in which storeys yield, at least: steps are of a fixed share at fine */
+    double storey_rate;        /* [1/s2] times the square of a step: what the other storeys change of one, at most */
+    m22 *newton_g, *newton_LU; /* (rows, rows) of Active */
+    double LU_of;              /* [s] the step whose matrix of linear devices alone newton_LU is; 0: it is not */
+    int are_linear;            /* all devices */
+    vec *bubble;               /* (c_pad) [N] of the contact forces over the step under way */
     vec *peak_u, *peak_d, *peak_a; /* (n_pad) */
     double v0[FLOORS_PAD_MAX];     /* [m/s] of the open contact */
-    int side[FLOORS_PAD_MAX];      /* 0 no contact, +1 or -1 */
-    double force_slope[CHANNELS_MAX], force_bend[CHANNELS_MAX]; /* [N/s], [N/s2] f' and f''/2 of the open contact */
-    FloorSet in_contact;
-    int state_valid;   /* 0: after free flight w, w' and sample[0] are not current */
-    double speed;      /* [m/s] largest |w'| */
-    double step_start; /* [s] of the step under way */
+    double step_start;             /* [s] of the step under way */
 
     /* step control */
     int flight_level, contact_level; /* where the next free flight, the next contact step is tried */
     int may_grow;                    /* the last contact step could have been twice as long */
     double energy_scale;             /* [J] */
-    double calm;                     /* >= 1, by which the tolerances of a step may grow: calm_of */
+    double calm;                     /* >= 1, by which the tolerances of a step may grow: is_settled */
     double crowd;                    /* >= 1, by which the energy tolerance of the step under way is divided */
-    double most_energy, mass_ratio;  /* [J] of the modes at any sample; building and core over the building */
+    double mass_ratio;               /* building and core over the building */
     double settled;                  /* [s] where contacts ended */
     long free_from, free_count;      /* the interval from which free intervals are tried, and over how many */
 
     int forced;               /* there are forces on the floors in this run */
-    int has_push;             /* they act in the interval under way */
     vec *push[2], *push_rise; /* (m_pad) modal load of these forces at both ends of the step under way; its rise */
     vec *swing[2];            /* (m_pad) the same of the interval */
-    double push_accel;        /* [m/s2] at most, of any floor, by these forces in the interval */
 
     FlightScratch flight;
     ContactScratch contact;
     StoreyScratch storeys;
     ReachScratch reach;
     RecordScratch record;
+
+    /* From here on all is 0 at rest. */
+    int side[FLOORS_PAD_MAX];                                   /* 0 no contact, +1 or -1 */
+    double force_slope[CHANNELS_MAX], force_bend[CHANNELS_MAX]; /* [N/s], [N/s2] f' and f''/2 of the open contact */
+    FloorSet in_contact;
+    int yielding;                       /* some storey did in the last step */
+    int lifting;                        /* the mat of the core was up, or its cone moved, at its end: */
+    double mat[MAT_STATES], mat_turned; /* there; [rad] the most so far */
+    double hysteresis;                  /* [J] */
+    int state_valid;                    /* 0: after free flight w, w' and sample[0] are not current */
+    double speed;                       /* [m/s] largest |w'| */
+    double most_energy;                 /* [J] of the modes at any sample */
+    int has_push;                       /* forces on the floors act in the interval under way */
+    double push_accel;                  /* [m/s2] at most, of any floor, by these forces in the interval */
 
     /* energy account and counts */
     double contact_lost, contact_clamped;

@@ -12,6 +12,6 @@ typedef struct {
     double tail_tolerance;       /* contacts end where no more than this share of the input is left; 0: never ... */
     double tail_share;           /* ... and no more than this of the smallest energy share; 0: it is not looked at */
     int crowd;                   /* so many floors at the core at once halve the steps (kernel.c); 0: no number does */
-    int calms_down;              /* solver and energy tolerance of a step grow as what is left falls (calm_of) */
+    int calms_down;              /* solver and energy tolerance of a step grow as what is left falls (is_settled) */
     int core_modes;              /* so many of the core's modes are kept; 0: as flexibility_left_out says */
 } FastTolerances;

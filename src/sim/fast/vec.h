@@ -217,10 +217,11 @@ static inline double largest(const vec *a, int nf)
     return lanes_max(most);
 }
 
-/* Blocks first, first + 1 .. (n_blocks of them) of Y_r = sum_i X_r[i] A[i], of `count` rows i of A, each of `blocks`
- * vectors; r = 0..n_rhs-1. The sums stay in registers: an element of X, once in all lanes, serves all blocks. */
+/* Blocks first, first + 1 .. (n_blocks of them) of Y_r = sum_i X_r[i] A[i], of `count` numbers of X_r and rows of A,
+ * each of `blocks` vectors; r = 0..n_rhs-1. The sums stay in registers: an element of X, once in all lanes, serves
+ * all blocks. */
 INLINE void rows_times_blocks(const int n_rhs, const int n_blocks, const vec *A, int blocks, int first, int count,
-                              const double *const X[], vec *const Y[])
+                              const vec *const X[], vec *const Y[])
 {
     vec sum[4][4] = {{{0}}};
 #pragma GCC unroll 4
@@ -229,7 +230,7 @@ INLINE void rows_times_blocks(const int n_rhs, const int n_blocks, const vec *A,
         for (int r = 0; r < n_rhs; r++)
 #pragma GCC unroll 4
             for (int b = 0; b < n_blocks; b++)
-                sum[r][b] += A[first + b] * X[r][i];
+                sum[r][b] += A[first + b] * scalars_const(X[r])[i];
 #pragma GCC unroll 4
     for (int r = 0; r < n_rhs; r++)
 #pragma GCC unroll 4
@@ -238,7 +239,7 @@ INLINE void rows_times_blocks(const int n_rhs, const int n_blocks, const vec *A,
 }
 
 /* The first blocks, `wanted` of them, three at a time: twenty floors are three vectors of eight. */
-INLINE void rows_times_first(const int n_rhs, const vec *A, int blocks, int wanted, int count, const double *const X[],
+INLINE void rows_times_first(const int n_rhs, const vec *A, int blocks, int wanted, int count, const vec *const X[],
                              vec *const Y[])
 {
     int b = 0;
@@ -248,7 +249,7 @@ INLINE void rows_times_first(const int n_rhs, const vec *A, int blocks, int want
         rows_times_blocks(n_rhs, 1, A, blocks, b, count, X, Y);
 }
 
-INLINE void rows_times(const int n_rhs, const vec *A, int blocks, int count, const double *const X[], vec *const Y[])
+INLINE void rows_times(const int n_rhs, const vec *A, int blocks, int count, const vec *const X[], vec *const Y[])
 {
     rows_times_first(n_rhs, A, blocks, blocks, count, X, Y);
 }
