@@ -7,8 +7,7 @@
 static const double OPEN_GAP = 10; /* [m] no response of this building reaches it */
 
 static const BenchKind KINDS[N_BENCH_KINDS] = {
-    {"linear", 10}, {"one-impact", 10}, {"irregular", 8}, {"tiny", 2}, {"zero", 2},
-};
+    {"linear", 10}, {"one-impact", 10}, {"irregular", 8}, {"tiny", 2}, {"zero", 2}};
 
 const BenchKind *bench_kind(int k)
 {

@@ -1,10 +1,9 @@
 /* bench/main.c -- the program imtet-bench: engines compared by speed, accuracy and reliability.
  *
- *   imtet-bench sweep | throughput | promise | stability | laws | search | loop | schedule | problem [--option [VALUE]] ... */
+ *   imtet-bench sweep | throughput | promise | stability | laws | search | loop | problem [--option [VALUE]] ... */
 #include <cblas.h>
 #include <string.h>
 
-#include "bench/schedule.h"
 #include "bench/search/factors.h"
 #include "bench/search/loop.h"
 #include "bench/stability/laws.h"
@@ -25,13 +24,19 @@ typedef struct {
     int quick;
 } Bench;
 
+/* The defaults as the command line changes them. */
+static Status settings_of(const Args *args, void (*defaults)(Settings *), Settings *s, Err *err)
+{
+    defaults(s);
+    TRY(args_apply(args, s, NULL, NULL, err));
+    return settings_check(s, err);
+}
+
 static Status prepare(const Args *args, Bench *b, Err *err)
 {
     b->quick = args_has(args, "--quick");
     Settings s;
-    paper_defaults(&s);
-    TRY(args_apply(args, &s, NULL, NULL, err));
-    TRY(settings_check(&s, err));
+    TRY(settings_of(args, paper_defaults, &s, err));
     b->options = settings_scene(&s);
     TRY(motion_load(&b->motion, s.motion.record, UNIT_FROM_FILE, err));
     return motion_prepare(&b->motion, s.motion.pga_g, s.motion.stretch, err);
@@ -81,8 +86,7 @@ static Status run_case(Chart *c, int k, Err *err)
     const Bench *b = &c->bench;
     BenchCase bench_case = {0};
     Status status = bench_case_open(&bench_case, bench_kind(k), &b->options, &b->motion, b->quick, err);
-    if (status == STATUS_OK)
-        status = sweep_run(&c->sweep, k, &bench_case, &c->plan, stderr, err);
+    THEN(status, sweep_run(&c->sweep, k, &bench_case, &c->plan, stderr, err));
     bench_case_close(&bench_case);
     return status;
 }
@@ -116,8 +120,7 @@ static Status run_throughput(const Args *args, Err *err)
 {
     Bench b = {0};
     Status status = prepare(args, &b, err);
-    if (status == STATUS_OK)
-        status = throughput_print(&b.options, &b.motion, b.quick, args_has(args, "--count"), stdout, err);
+    THEN(status, throughput_print(&b.options, &b.motion, b.quick, args_has(args, "--count"), stdout, err));
     motion_free(&b.motion);
     return status;
 }
@@ -147,11 +150,7 @@ static Status write_promise(const PromisePlan *plan, const char *path, Err *err)
 {
     Output o;
     TRY(output_open(&o, path ? path : "-", err));
-    const Status status = promise_write(plan, o.stream, stderr, err);
-    if (status == STATUS_OK)
-        return output_close(&o, err);
-    output_abandon(&o);
-    return status;
+    return output_end(&o, promise_write(plan, o.stream, stderr, err), err);
 }
 
 static Status run_promise(const Args *args, Err *err)
@@ -159,15 +158,12 @@ static Status run_promise(const Args *args, Err *err)
     Settings s;
     Motion records[RECORDS_MAX] = {0};
     PromisePlan plan = {.records = records, .front = args_value(args, "--front")};
-    paper_defaults(&s);
     TRY(args_whole(args, "--scenes", 1, 100000, 60, &plan.n_scenes, err));
-    TRY(args_apply(args, &s, NULL, NULL, err));
-    TRY(settings_check(&s, err));
+    TRY(settings_of(args, paper_defaults, &s, err));
     const SceneOptions options = settings_scene(&s);
     plan.options = &options;
     Status status = load_records(args, &s, records, &plan.n_records, err);
-    if (status == STATUS_OK)
-        status = write_promise(&plan, args_value(args, "--out"), err);
+    THEN(status, write_promise(&plan, args_value(args, "--out"), err));
     for (int k = 0; k < plan.n_records; k++)
         motion_free(&records[k]);
     return status;
@@ -204,9 +200,7 @@ static Status run_factors(const Args *args, Err *err)
                        .problems = args_value(args, "--problem"),
                        .aside = args_has(args, "--mixed") ? 3 : args_has(args, "--aside")};
     const long budgets[] = {300, 500, 1000};
-    settings_defaults(&s);
-    TRY(args_apply(args, &s, NULL, NULL, err));
-    TRY(settings_check(&s, err));
+    TRY(settings_of(args, settings_defaults, &s, err));
     TRY(args_whole(args, "--seeds", 1, 16, 5, &plan.n_seeds, err));
     TRY(args_whole(args, "--first-seed", 0, 1000000, 101, &plan.first_seed, err));
     if (args_has(args, "--evals"))
@@ -221,185 +215,95 @@ static Status run_loop(const Args *args, Err *err)
     Settings s;
     Output o;
     LoopPlan plan = {.settings = &s};
-    paper_defaults(&s);
-    TRY(args_apply(args, &s, NULL, NULL, err));
-    TRY(settings_check(&s, err));
+    TRY(settings_of(args, paper_defaults, &s, err));
     TRY(args_whole(args, "--seeds", 1, 100, 3, &plan.n_seeds, err));
     TRY(args_whole(args, "--iterations", 1, 10000, 100, &plan.iterations, err));
     TRY(args_number(args, "--error", 0.0, 1e9, 0.15, &plan.error_max, err));
     TRY(output_open(&o, args_has(args, "--csv") ? args_value(args, "--csv") : "-", err));
-    const Status status = loop_run(&plan, o.stream, err);
-    if (status == STATUS_OK)
-        return output_close(&o, err);
-    output_abandon(&o);
-    return status;
-}
-
-static Status run_schedule(const Args *args, Err *err)
-{
-    SchedulePlan plan = {.folder = args->operand};
-    TRY(args_number(args, "--serial", 0.0, 1.0, 0.2, &plan.serial, err));
-    TRY(args_number(args, "--ends", 0.0, 1e9, 0.0, &plan.ends, err));
-    TRY(args_number(args, "--chain", 0.0, 1e9, 0.0, &plan.chain, err));
-    return schedule(&plan, stdout, err);
+    return output_end(&o, loop_run(&plan, o.stream, err), err);
 }
 
 /* ---- the command line -------------------------------------------------------------------------------------------- */
-
+#define COMMAND(word, takes, function, sentence, first_example, text, ...)                                             \
+    {                                                                                                                  \
+        .name = word, .operand = takes, .run = function, .summary = sentence, .example = first_example,                \
+        .details = text, .program = "imtet-bench", .options = {                                                        \
+            __VA_ARGS__                                                                                                \
+        }                                                                                                              \
+    }
 static const Command COMMANDS[] = {
-    {.name = "sweep",
-     .summary = "speed against accuracy of every engine",
-     .example = "imtet-bench sweep --quick --case irregular --engine fast,etdrk4",
-     .details =
-         "Runs every engine at many tolerances on short windows of one ground motion and compares each run with\n"
-         "a reference that two unrelated methods agree on. Progress goes to standard error, the table to\n"
-         "standard output. Timings want the machine to themselves.",
-     .options =
-         {
-             {"--case", "NAME,...", NULL, 0, "linear, one-impact, irregular, tiny, zero; all unless given"},
-             {"--engine", "NAME,...", NULL, 0, "all unless given"},
-             {"--quick", NULL, NULL, 0, "half the time"},
-             OPTION_CSV,
-             OPTIONS_MOTION,
-             OPTION_SET,
-         },
-     .run = run_sweep,
-     .program = "imtet-bench"},
-    {.name = "throughput",
-     .summary = "designs per second over the whole motion, and ratios of engines",
-     .example = "imtet-bench throughput --quick",
-     .details = "Runs 24 designs with irregular gaps by the engine fast on one thread and compares its time\n"
-                "with that of other engines at equal error. Timings want the machine to themselves.",
-     .options =
-         {
-             {"--count", NULL, NULL, 0, "four designs by the fast engine, and nothing else: counts of its work"},
-             {"--quick", NULL, NULL, 0, "fewer designs, shorter comparisons"},
-             OPTIONS_MOTION,
-             OPTION_SET,
-         },
-     .run = run_throughput,
-     .program = "imtet-bench"},
-    {.name = "promise",
-     .summary = "how often every accuracy holds what it promises",
-     .example = "imtet-bench promise --scenes 10",
-     .details = "Runs random scenes of six kinds of gaps, and of four effects, by the engine fast at every "
-                "accuracy: quantiles of the errors\n"
-                "against accuracy fine, share of the predictable ones that hold the promise, time; true over likely\n"
-                "error; and fine against CVODE in a tenth of the log-uniform ones. Ten scenes take a minute.",
-     .options =
-         {
-             {"--record", "FILE", NULL, 1, "a ground motion; may be repeated; the built-in ones unless given"},
-             {"--scenes", "N", NULL, 0, "random scenes of each of the ten kinds; 60 unless given"},
-             {"--front", "FILE", NULL, 0,
-              "designs to simulate under all of the first record, as `imtet export` writes them"},
-             {"--out", "FILE", NULL, 0, "the table, as CSV"},
-             OPTION_PGA,
-             OPTION_UNIT,
-             OPTION_SET,
-         },
-     .run = run_promise,
-     .program = "imtet-bench"},
-    {.name = "stability",
-     .summary = "where methods fail: every engine through every case",
-     .example = "imtet-bench stability --quick --engine fast",
-     .details =
-         "Fails where an engine answers wrongly in silence, or where the engine fast does anything but hold. Each\n"
-         "cell runs in a process of its own: a crash is a failure of that cell, no answer in time a refusal.",
-     .options =
-         {
-             {"--quick", NULL, NULL, 0, "smaller cases, for tests"},
-             {"--long", NULL, NULL, 0, "also cases of 1e6 and 1e7 steps"},
-             {"--engine", "NAME", NULL, 0, "one engine; all unless given"},
-             {"--case", "NAME", NULL, 0, "one case; all unless given"},
-             {"--seconds", "N", NULL, 0, "processor time of one cell [s]; 20 unless given"},
-             {"--out", "FILE", NULL, 0, "the table, as CSV"},
-         },
-     .run = run_stability,
-     .program = "imtet-bench"},
-    {.name = "laws",
-     .summary = "rebound of the contact laws, measured",
-     .example = "imtet-bench laws --csv laws.csv",
-     .details =
-         "Rebound against restitution by the engine fast and by an independent integrator, and what the limit of\n"
-         "v0 changes. Fails where a law does not return what it is known to, and with --engines where fast or etdrk4\n"
-         "is farther from cvode than docs/promise.md says.",
-     .options =
-         {
-             {"--csv", "FILE", NULL, 0, "the rebound curves"},
-             {"--tower", "FILE", NULL, 0, "what the law changes in the tower, as CSV"},
-             {"--engines", "FILE", NULL, 0, "fast, cvode and etdrk4 in the tower under every law, as CSV"},
-         },
-     .run = run_laws,
-     .program = "imtet-bench"},
-    {.name = "search",
-     .summary = "evaluations that the surrogate saves, on problems of other families",
-     .example = "imtet-bench search --keep results/search",
-     .details =
-         "How many evaluations a plain search needs for the IGD+ and the hypervolume that the surrogate reaches, as\n"
-         "a multiple, 20 at most: medians over the seeds, the geometric mean over the problems. An interrupted\n"
-         "table with --keep goes on where it was; after a change of the search the folder is to be emptied.",
-     .options =
-         {
-             {"--problem", "LIST", NULL, 0, "some of the problems; all but those kept aside unless given"},
-             {"--aside", NULL, NULL, 0, "those kept aside instead"},
-             {"--mixed", NULL, NULL, 0, "those with whole numbers and choices instead"},
-             {"--evals", "N", NULL, 0, "evaluations; a search of 1000, read after 300, 500 and 1000, unless given"},
-             {"--seeds", "N", NULL, 0, "5 unless given"},
-             {"--first-seed", "N", NULL, 0, "101 unless given"},
-             OPTION_SET,
-         },
-     .run = run_factors,
-     .program = "imtet-bench"},
-    {.name = "loop",
-     .summary = "the loop of the paper's Fig. 6a beside the search",
-     .example = "imtet-bench loop --iterations 20 --seeds 1",
-     .details = "The paper's genetic algorithm on radial basis functions, and this program's search with as many\n"
-                "simulations from the same first designs: a row of every iteration and generation, as CSV.",
-     .options =
-         {
-             {"--iterations", "N", NULL, 0, "100 unless given"},
-             {"--error", "SHARE", NULL, 0, "of the range, that is acceptable; 0.15 unless given; 0: none is"},
-             {"--seeds", "N", NULL, 0, "3 unless given; the first is search.seed"},
-             OPTION_CSV,
-             OPTIONS_MOTION,
-             OPTION_SET,
-         },
-     .run = run_loop,
-     .program = "imtet-bench"},
-    {.name = "schedule",
-     .operand = "RUN",
-     .summary = "a run of one thread replayed on 1 to 64 workers",
-     .example = "imtet-bench schedule results/kobe",
-     .details = "Efficiency, critical path and waiting, from the times of its designs and of its search. As CSV.",
-     .options =
-         {
-             {"--serial", "SHARE", NULL, 0, "of choosing designs, that one processor does alone; 0.2 unless given"},
-             {"--ends", "S", NULL, 0, "work behind the search: polishing, naming, baselines"},
-             {"--chain", "S", NULL, 0, "the longest chain in it"},
-         },
-     .run = run_schedule,
-     .program = "imtet-bench"},
-    {.name = "problem",
-     .operand = "NAME",
-     .summary = "the search on a problem from a textbook: dtlz2, wfg4",
-     .example = "imtet-bench problem dtlz2 --max-evals 500 --seed 1 --csv dtlz2.csv",
-     .details =
-         "Of 22 variables and 7 objectives (problem.variables, problem.objectives); every evaluated design, one row\n"
-         "each in their order: variables, then objectives. With --noise the noisy objectives of the search stand\n"
-         "before the exact ones.",
-     .options =
-         {
-             SETTING("--max-evals", "N", "search.max_evals", "stop after so many evaluations"),
-             SETTING("--seed", "N", "search.seed", "same seed, same settings: same bytes"),
-             SETTING("--threads", "N", "search.threads", "0: one per processor"),
-             {"--noise", "SHARE", NULL, 0,
-              "standard deviation of an objective that the search sees, as a share of its value"},
-             OPTION_CSV,
-             OPTION_SET,
-         },
-     .run = problem_run,
-     .program = "imtet-bench"},
-};
+    COMMAND("sweep", NULL, run_sweep, "speed against accuracy of every engine",
+            "imtet-bench sweep --quick --case irregular --engine fast,etdrk4",
+            "Runs every engine at many tolerances on short windows of one ground motion and compares each run with\n"
+            "a reference that two unrelated methods agree on. Progress goes to standard error, the table to\n"
+            "standard output. Timings want the machine to themselves.",
+            {"--case", "NAME,...", NULL, 0, "linear, one-impact, irregular, tiny, zero; all unless given"},
+            {"--engine", "NAME,...", NULL, 0, "all unless given"}, {"--quick", NULL, NULL, 0, "half the time"},
+            OPTION_CSV, OPTIONS_MOTION, OPTION_SET),
+    COMMAND("throughput", NULL, run_throughput, "designs per second over the whole motion, and ratios of engines",
+            "imtet-bench throughput --quick",
+            "Runs 24 designs with irregular gaps by the engine fast on one thread and compares its time\n"
+            "with that of other engines at equal error. Timings want the machine to themselves.",
+            {"--count", NULL, NULL, 0, "four designs by the fast engine, and nothing else: counts of its work"},
+            {"--quick", NULL, NULL, 0, "fewer designs, shorter comparisons"}, OPTIONS_MOTION, OPTION_SET),
+    COMMAND("promise", NULL, run_promise, "how often every accuracy holds what it promises",
+            "imtet-bench promise --scenes 10",
+            "Runs random scenes of six kinds of gaps, and of four effects, by the engine fast at every "
+            "accuracy: quantiles of the errors\n"
+            "against accuracy fine, share of the predictable ones that hold the promise, time; true over likely\n"
+            "error; and fine against CVODE in a tenth of the log-uniform ones. Ten scenes take a minute.",
+            {"--record", "FILE", NULL, 1, "a ground motion; may be repeated; the built-in ones unless given"},
+            {"--scenes", "N", NULL, 0, "random scenes of each of the ten kinds; 60 unless given"},
+            {"--front", "FILE", NULL, 0,
+             "designs to simulate under all of the first record, as `imtet export` writes them"},
+            {"--out", "FILE", NULL, 0, "the table, as CSV"}, OPTION_PGA, OPTION_UNIT, OPTION_SET),
+    COMMAND("stability", NULL, run_stability, "where methods fail: every engine through every case",
+            "imtet-bench stability --quick --engine fast",
+            "Fails where an engine answers wrongly in silence, or where the engine fast does anything but hold. Each\n"
+            "cell runs in a process of its own: a crash is a failure of that cell, no answer in time a refusal.",
+            {"--quick", NULL, NULL, 0, "smaller cases, for tests"},
+            {"--long", NULL, NULL, 0, "also cases of 1e6 and 1e7 steps"},
+            {"--engine", "NAME", NULL, 0, "one engine; all unless given"},
+            {"--case", "NAME", NULL, 0, "one case; all unless given"},
+            {"--seconds", "N", NULL, 0, "processor time of one cell [s]; 20 unless given"},
+            {"--out", "FILE", NULL, 0, "the table, as CSV"}),
+    COMMAND("laws", NULL, run_laws, "rebound of the contact laws, measured", "imtet-bench laws --csv laws.csv",
+            "Rebound against restitution by the engine fast and by an independent integrator, and what the limit "
+            "of\nv0 changes. Fails where a law does not return what it is known to, and with --engines where fast or "
+            "etdrk4\nis farther from cvode than docs/promise.md says.",
+            {"--csv", "FILE", NULL, 0, "the rebound curves"},
+            {"--tower", "FILE", NULL, 0, "what the law changes in the tower, as CSV"},
+            {"--engines", "FILE", NULL, 0, "fast, cvode and etdrk4 in the tower under every law, as CSV"}),
+    COMMAND(
+        "search", NULL, run_factors, "evaluations that the surrogate saves, on problems of other families",
+        "imtet-bench search --keep results/search",
+        "How many evaluations a plain search needs for the IGD+ and the hypervolume that the surrogate reaches, as\n"
+        "a multiple, 20 at most: medians over the seeds, the geometric mean over the problems. An interrupted\n"
+        "table with --keep goes on where it was; after a change of the search the folder is to be emptied.",
+        {"--problem", "LIST", NULL, 0, "some of the problems; all but those kept aside unless given"},
+        {"--aside", NULL, NULL, 0, "those kept aside instead"},
+        {"--mixed", NULL, NULL, 0, "those with whole numbers and choices instead"},
+        {"--evals", "N", NULL, 0, "evaluations; a search of 1000, read after 300, 500 and 1000, unless given"},
+        {"--seeds", "N", NULL, 0, "5 unless given"}, {"--first-seed", "N", NULL, 0, "101 unless given"}, OPTION_SET),
+    COMMAND("loop", NULL, run_loop, "the loop of the paper's Fig. 6a beside the search",
+            "imtet-bench loop --iterations 20 --seeds 1",
+            "The paper's genetic algorithm on radial basis functions, and this program's search with as many\n"
+            "simulations from the same first designs: a row of every iteration and generation, as CSV.",
+            {"--iterations", "N", NULL, 0, "100 unless given"},
+            {"--error", "SHARE", NULL, 0, "of the range, that is acceptable; 0.15 unless given; 0: none is"},
+            {"--seeds", "N", NULL, 0, "3 unless given; the first is search.seed"}, OPTION_CSV, OPTIONS_MOTION,
+            OPTION_SET),
+    COMMAND("problem", "NAME", problem_run, "the search on a problem from a textbook: dtlz2, wfg4",
+            "imtet-bench problem dtlz2 --max-evals 500 --seed 1 --csv dtlz2.csv",
+            "Of 22 variables and 7 objectives (problem.variables, problem.objectives); every evaluated design, one "
+            "row\neach in their order: variables, then objectives. With --noise the noisy objectives of the search "
+            "stand\nbefore the exact ones.",
+            SETTING("--max-evals", "N", "search.max_evals", "stop after so many evaluations"),
+            SETTING("--seed", "N", "search.seed", "same seed, same settings: same bytes"),
+            SETTING("--threads", "N", "search.threads", "0: one per processor"),
+            {"--noise", "SHARE", NULL, 0,
+             "standard deviation of an objective that the search sees, as a share of its value"},
+            OPTION_CSV, OPTION_SET)};
 enum { N_COMMANDS = sizeof COMMANDS / sizeof COMMANDS[0] };
 
 static void print_usage(FILE *out)
@@ -434,8 +338,8 @@ static Status run(int argc, char *argv[], Err *err)
     Status status = args_parse(&args, command, argc - 2, argv + 2, err);
     if (status == STATUS_OK && args.help)
         command_help(command, stdout);
-    else if (status == STATUS_OK)
-        status = command->run(&args, err);
+    else
+        THEN(status, command->run(&args, err));
     args_free(&args);
     return status;
 }

@@ -22,11 +22,9 @@ typedef struct {
     double steps;
 } Preset;
 
-static const Preset PRESETS[] = {
-    {"coarse", ACCURACY_COARSE, 0},
-    {"standard", ACCURACY_STANDARD, 0},
-    {"standard, twice the steps", ACCURACY_STANDARD, 4},
-};
+static const Preset PRESETS[] = {{"coarse", ACCURACY_COARSE, 0},
+                                 {"standard", ACCURACY_STANDARD, 0},
+                                 {"standard, twice the steps", ACCURACY_STANDARD, 4}};
 enum { N_PRESETS = sizeof PRESETS / sizeof PRESETS[0], N_ERRORS = PROMISED + 1, STANDARD = 1, TWICE_STANDARD = 2 };
 
 static const int ESTIMATED[] = {MEASURE_J1, MEASURE_J2, MEASURE_J3, MEASURE_ED1, MEASURE_ED5_10, MEASURE_EDCS};
@@ -387,8 +385,7 @@ static Status write_reference(Promise *p, FILE *out, Err *err)
         double seconds;
         TRY(promise_case(p->plan, p->n_floors, GAPS_LOG_UNIFORM, k, &c, err));
         Status status = simulate(p, &c, ENGINE_CVODE, &FINE, 1, &wanted, &seconds, err);
-        if (status == STATUS_OK)
-            status = simulate(p, &c, ENGINE_FAST, &FINE, 1, &found, &seconds, err);
+        THEN(status, simulate(p, &c, ENGINE_FAST, &FINE, 1, &found, &seconds, err));
         motion_free(&c.motion);
         TRY(status);
         if (wanted.outcome != RUN_OK || !(wanted.j1_m > 0))

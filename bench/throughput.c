@@ -163,8 +163,7 @@ Status throughput_print(const SceneOptions *s, const Motion *motion, int quick, 
     t.reference = t.seen + 1;
     t.judged = t.seen + 2;
     Status status = bench_case_open(&t.bench_case, bench_kind(2), s, motion, quick, err);
-    if (status == STATUS_OK)
-        status = run_fast(&t, err);
+    THEN(status, run_fast(&t, err));
     if (status == STATUS_OK && !count)
         status = compare_all(&t, quick, err);
     bench_case_close(&t.bench_case);

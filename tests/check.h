@@ -2,6 +2,11 @@
 #pragma once
 
 #include "base/status.h" /* before cmocka.h, which defines a macro fail() */
+#include "base/linalg.h"
+#include "base/random.h"
+#include "base/stat.h"
+#include "base/units.h"
+#include "settings/settings.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -43,6 +48,40 @@ static inline void free_pointed(void *pointer)
     void *block;
     memcpy(&block, pointer, sizeof block);
     free(block);
+}
+
+/* FOR_EACH(const char *, word, "a", "b") ... *word ...: the statement for every one of the values. */
+#define ARRAY_OF(type, ...) ((const __typeof__(type)[]){__VA_ARGS__})
+#define COUNT_OF(type, ...) (sizeof ARRAY_OF(type, __VA_ARGS__) / sizeof(type))
+#define FOR_EACH(type, at, ...)                                                                                        \
+    for (const __typeof__(type) *at = ARRAY_OF(type, __VA_ARGS__), *at##_end = at + COUNT_OF(type, __VA_ARGS__);       \
+         at < at##_end; at++)
+
+/* What the format makes; to be freed. */
+__attribute__((format(printf, 1, 2))) static inline char *formatted(const char *format, ...)
+{
+    char *text = NULL;
+    va_list list;
+    va_start(list, format);
+    if (vasprintf(&text, format, list) < 0)
+        abort();
+    va_end(list);
+    return text;
+}
+
+/* The same, kept until sixteen others were made. */
+__attribute__((format(printf, 1, 2))) static inline char *brief(const char *format, ...)
+{
+    enum { KEPT = 16, TEXT_MAX = 16384 };
+    static char kept[KEPT][TEXT_MAX];
+    static size_t next;
+    va_list list;
+    va_start(list, format);
+    char *text = kept[next++ % KEPT];
+    if (vsnprintf(text, TEXT_MAX, format, list) >= TEXT_MAX)
+        abort();
+    va_end(list);
+    return text;
 }
 
 /* A test puts itself on the list of its file, in the order in which they stand: TEST(what_is_so) { ... } */
@@ -96,6 +135,20 @@ static inline void check_close(double actual, double wanted, double tolerance, c
 }
 #define assert_close(actual, wanted, relative_tolerance)                                                               \
     check_close(actual, wanted, relative_tolerance, #actual, __FILE__, __LINE__)
+
+/* assert_close of these members of both, at most eight. */
+#define CLOSE_1(a, b, t, m)                                  assert_close((a).m, (b).m, t)
+#define CLOSE_2(a, b, t, m, ...)                             (CLOSE_1(a, b, t, m), CLOSE_1(a, b, t, __VA_ARGS__))
+#define CLOSE_3(a, b, t, m, ...)                             (CLOSE_1(a, b, t, m), CLOSE_2(a, b, t, __VA_ARGS__))
+#define CLOSE_4(a, b, t, m, ...)                             (CLOSE_1(a, b, t, m), CLOSE_3(a, b, t, __VA_ARGS__))
+#define CLOSE_5(a, b, t, m, ...)                             (CLOSE_1(a, b, t, m), CLOSE_4(a, b, t, __VA_ARGS__))
+#define CLOSE_6(a, b, t, m, ...)                             (CLOSE_1(a, b, t, m), CLOSE_5(a, b, t, __VA_ARGS__))
+#define CLOSE_7(a, b, t, m, ...)                             (CLOSE_1(a, b, t, m), CLOSE_6(a, b, t, __VA_ARGS__))
+#define CLOSE_8(a, b, t, m, ...)                             (CLOSE_1(a, b, t, m), CLOSE_7(a, b, t, __VA_ARGS__))
+#define CLOSE_OF(m1, m2, m3, m4, m5, m6, m7, m8, which, ...) which
+#define assert_close_in(a, b, tolerance, ...)                                                                          \
+    CLOSE_OF(__VA_ARGS__, CLOSE_8, CLOSE_7, CLOSE_6, CLOSE_5, CLOSE_4, CLOSE_3, CLOSE_2, CLOSE_1, 0)                   \
+    (a, b, tolerance, __VA_ARGS__)
 
 /* Comparisons of any two numbers, whose values are printed where they fail; the operands are then evaluated again. */
 static inline void comparison_failed(const char *what, double left, double right, const char *file, int line)
@@ -158,3 +211,49 @@ static inline void check_ok(Status status, const Err *why, const char *what, con
     }
 }
 #define CHECK_OK(status, why) check_ok(status, why, #status, __FILE__, __LINE__)
+
+/* The test is skipped where this file, of ../shared mostly, is not there. */
+static inline void need_file(const char *path)
+{
+    if (access(path, R_OK) == 0)
+        return;
+    print_message("skipped: %s is not there\n", path);
+    skip();
+}
+
+static inline Settings default_settings(void)
+{
+    Settings s;
+    settings_defaults(&s);
+    return s;
+}
+
+/* The format's words behind those of an array. */
+#define append(text, ...) snprintf((text) + strlen(text), sizeof(text) - strlen(text), __VA_ARGS__)
+
+static inline FILE *opened(const char *path, const char *mode)
+{
+    FILE *f = fopen(path, mode);
+    if (!f)
+        fail_msg("%s: cannot be opened", path);
+    return f;
+}
+
+static inline void write_to(const char *path, const char *text)
+{
+    FILE *f = opened(path, "w");
+    assert_at_most(0, fputs(text, f));
+    assert_int_equal(fclose(f), 0);
+}
+
+/* The command of a shell succeeds. */
+__attribute__((format(printf, 1, 2))) static inline void expect_shell(const char *format, ...)
+{
+    char command[4096];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(command, sizeof command, format, list);
+    va_end(list);
+    if (system(command) != 0)
+        fail_msg("%s", command);
+}

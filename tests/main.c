@@ -19,8 +19,7 @@ void suite_add(Suite *suite)
 
 static const Suite *find(const char *name)
 {
-    char end[256];
-    snprintf(end, sizeof end, "/test_%s.c", name);
+    FREED char *end = formatted("/test_%s.c", name);
     for (const Suite *s = suites; s; s = s->next)
         if (strlen(s->file) > strlen(end) && strcmp(s->file + strlen(s->file) - strlen(end), end) == 0)
             return s;

@@ -1,23 +1,16 @@
 /* tests/one_scene.h -- a scene that is made for one simulation, and the tower of 20 floors for several. */
 #pragma once
 
-#include "check.h"
 #include "scene_options.h"
-#include "sim/sim.h"
 
 /* The scene with devices that hardly act, once. */
 static inline SimResult simulate(const SceneOptions *o, SceneKind kind, const Motion *motion, const double x[])
 {
-    Scene *scene;
-    SimWorker *worker;
+    OWNED(one_scene_free) OneScene s = one_scene_of(o, motion);
     SimResult r;
-    CHECK_OK(scene_create(&scene, o, motion, &err), &err);
-    CHECK_OK(sim_worker_create(&worker, scene, &err), &err);
-    sim_worker_device(worker, &(LinearDevice){1, 0.1, 0});
-    CHECK_OK(sim_run(worker, kind, x, &r, &err), &err);
-    assert_int_equal(r.outcome, RUN_OK);
-    sim_worker_free(worker);
-    scene_free(scene);
+    sim_worker_device(s.worker, &(LinearDevice){1, 0.1, 0});
+    CHECK_OK(sim_run(s.worker, kind, x, &r, &err), &err);
+    assert_ran(&r);
     return r;
 }
 
@@ -45,10 +38,10 @@ typedef struct {
 static inline void tower_open(Tower *t, double t_base, double t_top)
 {
     const SceneOptions options = settings_scene(&t->settings);
-    CHECK_OK(motion_load(&t->motion, t->settings.motion.record, UNIT_FROM_FILE, &err), &err);
-    CHECK_OK(motion_prepare(&t->motion, t->settings.motion.pga_g, t->settings.motion.stretch, &err), &err);
-    CHECK_OK(scene_create(&t->scene, &options, &t->motion, &err), &err);
-    CHECK_OK(sim_worker_create(&t->worker, t->scene, &err), &err);
+    t->motion = motion_of(t->settings.motion.record, t->settings.motion.pga_g, t->settings.motion.stretch);
+    const OneScene stage = one_scene_of(&options, &t->motion);
+    t->scene = stage.scene;
+    t->worker = stage.worker;
     for (int j = 0; j < 20; j++)
         t->x[j] = 0.008 * (j + 1);
     t->x[20] = t_base;

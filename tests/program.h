@@ -46,6 +46,14 @@ __attribute__((noinline)) static char *text_of(const char *path)
     return text;
 }
 
+static inline char *in_place(const char *name)
+{
+    return formatted("%s/%s", place.folder, name);
+}
+
+/* The same, not to be freed (brief). */
+#define there(name) brief("%s/%s", place.folder, name)
+
 /* The words of the format in `to`; @ stands for the test's own folder. */
 __attribute__((format(printf, 3, 0))) static inline void spread(char *to, size_t size, const char *format, va_list list)
 {
@@ -60,19 +68,17 @@ __attribute__((format(printf, 3, 0))) static inline void spread(char *to, size_t
 /* Runs `imtet ARGUMENTS` through the shell; @ in the format stands for the test's own folder. */
 __attribute__((format(printf, 2, 3))) static inline void run(Said *said, const char *format, ...)
 {
-    char arguments[4096], command[8192], out[128], said_err[128];
+    char arguments[4096];
     va_list list;
     va_start(list, format);
     spread(arguments, sizeof arguments, format, list);
     va_end(list);
-    snprintf(out, sizeof out, "%s/out", place.folder);
-    snprintf(said_err, sizeof said_err, "%s/err", place.folder);
-    snprintf(command, sizeof command, "exec >%s 2>%s; %s '%s' %s", out, said_err, place.under, getenv("IMTET"),
-             arguments);
+    FREED char *command = formatted("exec >%s/out 2>%s/err; %s '%s' %s", place.folder, place.folder, place.under,
+                                    getenv("IMTET"), arguments);
     const int status = system(command);
     said->code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    said->out = text_of(out);
-    said->err = text_of(said_err);
+    said->out = text_of(there("out"));
+    said->err = text_of(there("err"));
 }
 
 static inline void forget(Said *said)
@@ -129,15 +135,13 @@ static inline char *all_of(const char *run)
 /* Evaluations of its finished generations; 0: there is no run yet. */
 static inline size_t finished_in(const char *name)
 {
-    Said s;
+    OWNED(forget) Said s;
     size_t n = 0;
     run(&s, "export @/%s --all --csv -", name);
     for (const char *line = s.code == 0 ? strchr(s.out, '\n') : NULL; line && line[1]; line = strchr(line + 1, '\n')) {
         const char *end = strchr(line + 1, '\n'), *open = strstr(line, ",unfinished,");
         n += !open || (end && open > end);
     }
-    free(s.out);
-    free(s.err);
     return n;
 }
 
@@ -164,31 +168,18 @@ static inline double number(const json_t *o, const char *key)
     return json_number_value(value);
 }
 
-static inline char *in_place(const char *name)
-{
-    char *path = NULL;
-    assert_less(0, asprintf(&path, "%s/%s", place.folder, name));
-    return path;
-}
-
+/* With its folder, where there is none yet. */
 static inline void write_in_place(const char *name, const char *text)
 {
-    FREED char *path = in_place(name);
-    FILE *f = fopen(path, "w");
-    assert_non_null(f);
-    assert_at_most(0, fputs(text, f));
-    assert_int_equal(fclose(f), 0);
+    FREED char *path = in_place(name), *folder = strndup(path, (size_t)(strrchr(path, '/') - path));
+    mkdir(folder, 0777);
+    write_to(path, text);
 }
 
 /* Storeys of a building in the folder @/name: lines of height, mass and stiffness. */
 static inline void write_storeys_in_place(const char *name, const char *rows)
 {
-    char file[64], text[400];
-    FREED char *folder = in_place(name);
-    mkdir(folder, 0777);
-    snprintf(file, sizeof file, "%s/storeys.csv", name);
-    snprintf(text, sizeof text, "height_m,mass_kg,stiffness_n_m\n%s", rows);
-    write_in_place(file, text);
+    write_in_place(brief("%s/storeys.csv", name), brief("height_m,mass_kg,stiffness_n_m\n%s", rows));
 }
 
 static inline int count(const char *text, const char *word)
@@ -203,9 +194,7 @@ static inline int count(const char *text, const char *word)
 
 static inline char *read_in_place(const char *name)
 {
-    char *path = in_place(name), *text = text_of(path);
-    free(path);
-    return text;
+    return text_of(there(name));
 }
 
 static inline void expect_file(const char *name, const char *words)
@@ -225,8 +214,7 @@ static inline void assert_same_files(const char *name, const char *other)
 static inline Table table_of(const char *name)
 {
     Table t;
-    FREED char *path = in_place(name);
-    CHECK_OK(table_read(&t, path, 1, &err), &err);
+    CHECK_OK(table_read(&t, there(name), 1, &err), &err);
     return t;
 }
 
@@ -235,7 +223,7 @@ static inline void write_shaking(const char *name)
 {
     char text[4096] = "time_s,accel_m_s2\n";
     for (int i = 0; i <= 60; i++)
-        sprintf(text + strlen(text), "%.2f,%.17g\n", 0.02 * i, 3 * sin(2.5 * 0.02 * i) + 2 * sin(8.2 * 0.02 * i));
+        append(text, "%.2f,%.17g\n", 0.02 * i, 3 * sin(2.5 * 0.02 * i) + 2 * sin(8.2 * 0.02 * i));
     write_in_place(name, text);
 }
 
@@ -249,9 +237,7 @@ static inline int make_place(void **state)
 static inline int clear_place(void **state)
 {
     (void)state;
-    char command[128];
-    snprintf(command, sizeof command, "rm -rf '%s'", place.folder);
-    return system(command);
+    return system(brief("rm -rf '%s'", place.folder));
 }
 
 /* Every simulation in a process of its own. */
@@ -262,8 +248,6 @@ static const char ISOLATED[] =
 /* A process that simulates for `parent`, whose helper has started it, gets a signal; 0: none does just now. */
 static inline int signal_child_of(pid_t parent, const char *signal)
 {
-    char command[128];
-    snprintf(command, sizeof command, "kill -%s $(pgrep -r R -P $(pgrep -d, -P %d) | tail -1) 2>/dev/null", signal,
-             (int)parent);
-    return system(command) == 0;
+    return system(brief("kill -%s $(pgrep -r R -P $(pgrep -d, -P %d) | tail -1) 2>/dev/null", signal, (int)parent)) ==
+           0;
 }

@@ -9,10 +9,10 @@
 #include <spawn.h>
 #include <sqlite3.h>
 
-#include "settings/settings.h"
 #include "store/export.h"
 #include "store/run_read.h"
 #include "store/store.h"
+#include "study/study.h"
 
 static const char TEXTBOOK[] = "[problem]\nkind = external\ncommand = " TEXTBOOK_WORKER
                                " dtlz2 6 3 0.05\nvariables = 6\nobjectives = 3\nnoisy = yes\n"
@@ -23,6 +23,30 @@ static const char TEXTBOOK[] = "[problem]\nkind = external\ncommand = " TEXTBOOK
 static const char DEAF[] = "[problem]\nkind = external\ncommand = sh tests/worker.sh deaf\nvariables = 3\n"
                            "objectives = 2\n[search]\nmax_evals = 8\nthreads = 1\n";
 
+/* Lets so many questions pass, then stops. */
+static inline int stop_after(void *user)
+{
+    int left;
+#pragma omp atomic capture
+    left = --*(int *)user;
+    return left < 0;
+}
+
+static inline StudySummary study_to_its_end(const Settings *s)
+{
+    StudySummary summary;
+    CHECK_OK(study_run(s, &(StudyOptions){0}, &summary, NULL, &err), &err);
+    return summary;
+}
+
+static inline StudySummary study_stopped_after(int questions, const Settings *s)
+{
+    StudySummary summary;
+    const StudyOptions options = {.stop = stop_after, .user = &questions};
+    assert_int_equal(study_run(s, &options, &summary, NULL, &err), STATUS_STOPPED);
+    return summary;
+}
+
 static inline char *path_of(const char *name, char path[PATH_MAX])
 {
     snprintf(path, PATH_MAX, "%s/%s", place.folder, name);
@@ -32,14 +56,12 @@ static inline char *path_of(const char *name, char path[PATH_MAX])
 /* In the test's own folder. */
 __attribute__((format(printf, 1, 2))) static inline void shell_in_place(const char *format, ...)
 {
-    char spread[1024], command[2048];
+    char spread[1024];
     va_list list;
     va_start(list, format);
     vsnprintf(spread, sizeof spread, format, list);
     va_end(list);
-    snprintf(command, sizeof command, "cd '%s' && %s", place.folder, spread);
-    if (system(command) != 0)
-        fail_msg("%s", command);
+    expect_shell("cd '%s' && %s", place.folder, spread);
 }
 
 /* `database` is a file there. */

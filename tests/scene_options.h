@@ -5,20 +5,37 @@
 #include "evaluate/scenario.h"
 #include "motion/motion_scale.h"
 #include "scene/building.h"
+#include "sim/engine.h"
+#include "sim/sim.h"
+#include "motion/spectrum.h"
 #include "bench/paper.h"
 
 static inline SceneOptions scene_defaults(void)
 {
-    Settings s;
-    settings_defaults(&s);
+    const Settings s = default_settings();
     return settings_scene(&s);
+}
+
+static inline Settings paper_settings(void)
+{
+    Settings s;
+    paper_defaults(&s);
+    return s;
 }
 
 static inline SceneOptions paper_scene(void)
 {
-    Settings s;
-    paper_defaults(&s);
+    const Settings s = paper_settings();
     return settings_scene(&s);
+}
+
+/* A record at a peak [g] and on a longer time; of pga_g 0 as it is. */
+static inline Motion motion_of(const char *source, double pga_g, double stretch)
+{
+    Motion m;
+    CHECK_OK(motion_load(&m, source, UNIT_FROM_FILE, &err), &err);
+    CHECK_OK(motion_prepare(&m, pga_g, stretch, &err), &err);
+    return m;
 }
 
 /* The tower of six floors of program.h: what simulations do with twenty floors, in a tenth of the time. */
@@ -33,8 +50,7 @@ static inline Status scenario_of(Scenario *w, const SceneOptions *o, const Motio
 {
     OWNED(motion_free) Motion read = {0};
     TRY(motion_open(&read, record, why));
-    const Status status = scenario_open(w, o, record, &read, why);
-    return status;
+    return scenario_open(w, o, record, &read, why);
 }
 
 static inline Status load_model(Building *b, const char *model, Err *why)
@@ -42,6 +58,13 @@ static inline Status load_model(Building *b, const char *model, Err *why)
     SceneOptions s = scene_defaults();
     snprintf(s.building.model, sizeof s.building.model, "%s", model);
     return building_load(b, &s.building, why);
+}
+
+/* Gaps that grow by `step` from the lowest, and the walls of the paper. */
+static inline void paper_design(double x[22], double lowest, double step)
+{
+    for (int j = 0; j < 22; j++)
+        x[j] = j < 20 ? lowest + step * j : j == 20 ? 0.012 : 0.0064;
 }
 
 #define KOBE "../shared/records/kobe_jma_ns.csv"
@@ -59,6 +82,43 @@ static inline Status known_settings(Settings *s, const char *anchors, Err *why)
     snprintf(s->motion.record, sizeof s->motion.record, "%s", KOBE);
     snprintf(s->core.foundation, sizeof s->core.foundation, "soil=C radius=11.3 weight=2.4e7%s", anchors);
     return STATUS_OK;
+}
+
+/* A scene and one that simulates it. */
+typedef struct {
+    Scene *scene;
+    SimWorker *worker;
+} OneScene;
+
+static inline OneScene one_scene_of(const SceneOptions *o, const Motion *motion)
+{
+    OneScene s;
+    CHECK_OK(scene_create(&s.scene, o, motion, &err), &err);
+    CHECK_OK(sim_worker_create(&s.worker, s.scene, &err), &err);
+    return s;
+}
+
+static inline void one_scene_free(OneScene *s)
+{
+    sim_worker_free(s->worker);
+    scene_free(s->scene);
+}
+
+/* It ran to its end. */
+static inline void assert_ran(const SimResult *r)
+{
+    if (r->outcome != RUN_OK)
+        fail_msg("%s", r->reason);
+}
+
+/* A scene that is made for one simulation. */
+static inline SimResult run_once(const SceneOptions *o, const Motion *motion, SceneKind kind, const double x[])
+{
+    OWNED(one_scene_free) OneScene s = one_scene_of(o, motion);
+    SimResult r;
+    CHECK_OK(sim_run(s.worker, kind, x, &r, &err), &err);
+    assert_ran(&r);
+    return r;
 }
 
 /* One simulation under a record; device NULL: none. */

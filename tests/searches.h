@@ -1,9 +1,11 @@
 /* tests/searches.h -- what tests of the search share: a configuration, and the states that a search went through. */
 #pragma once
 
-#include "check.h"
-
 #include "moga/search.h"
+#include "bench/textbook.h"
+#include "functions.h"
+#include "moga/constants.h"
+#include "base/dominance.h"
 #include "study/search_loop.h"
 
 /* As the program has it, but for what every test has of its own: seed, sizes, limits. */

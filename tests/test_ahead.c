@@ -3,10 +3,6 @@
 #include "runs.h"
 #include "searches.h"
 
-#include "base/random.h"
-#include "bench/textbook.h"
-#include "moga/constants.h"
-
 enum { VAR = 5, OBJ = 2, ROWS_MAX = 400 };
 
 typedef struct {
@@ -104,14 +100,13 @@ static Told once, again;
 
 TEST(the_order_of_answers_changes_no_question)
 {
-    static const size_t TOGETHER[] = {1, 8, 40};
     prepare_search(&once, -1, 200);
     run_told(&once, 1, 0);
     assert_int_equal(once.n, 200);
-    for (size_t i = 0; i < N_OF(TOGETHER); i++)
+    FOR_EACH (size_t, together, 1, 8, 40)
         for (uint32_t shuffled = 0; shuffled < 3; shuffled++) {
             prepare_search(&again, -1, 200);
-            run_told(&again, TOGETHER[i], shuffled);
+            run_told(&again, *together, shuffled);
             assert_same_questions(&once, &again);
         }
 }
@@ -119,14 +114,13 @@ TEST(the_order_of_answers_changes_no_question)
 /* With answers that come in time or late: a question follows from those to all but the last `ahead` before its group. */
 TEST(no_more_is_under_way_than_the_look_ahead_and_a_group)
 {
-    static const long GIVEN[] = {0, 1, 7, 40};
-    for (size_t i = 0; i < N_OF(GIVEN); i++) {
+    FOR_EACH (long, given, 0, 1, 7, 40) {
         Out out = {0};
-        prepare_search(&once, GIVEN[i], 120);
+        prepare_search(&once, *given, 120);
         Search *s = search_from(&once, NULL);
         while (ask_all(&once, s, &out)) {
             if (once.n > once.config.initial)
-                assert_at_most(out.n, 2 * (size_t)GIVEN[i] + 1);
+                assert_at_most(out.n, 2 * (size_t)*given + 1);
             tell(&once, s, &out, 0);
         }
         assert_int_equal(once.n, 120);
@@ -223,13 +217,10 @@ TEST(workers_of_uneven_speed_do_not_wait_for_each_other)
 /* Long enough that it does not end between two commits. */
 TEST(a_killed_run_goes_on_with_every_result_it_had)
 {
-    char path[PATH_MAX];
     Run before, after;
     write_in_place("killed.ini", UNEVEN("400"));
     for (int kill_at = 10; kill_at < 110; kill_at += 90) {
-        char name[24];
-        snprintf(name, sizeof name, "killed%d", kill_at);
-        path_of(name, path);
+        FREED char *name = formatted("killed%d", kill_at), *path = in_place(name);
         const pid_t pid = start("killed.ini", name);
         for (size_t n = 0; n < (size_t)kill_at; rest(0.01))
             if (run_read(&before, path, &err) == STATUS_OK) {

@@ -4,12 +4,11 @@
 /* f1 = x1, f2 = 20 - x1 + x2 + 3 for the word b; every request's id is written down. */
 static void write_study(const char *name, const char *mode)
 {
-    char text[640];
-    snprintf(text, sizeof text,
-             "[problem]\nkind = external\ncommand = sh tests/worker.sh %s %s/asked\nvariables = 3\nobjectives = 2\n"
-             "lower = 0\nupper = 20\nkinds = int, int, choice:a|b\ntimeout_s = 0.3\n"
-             "[search]\ninitial = 12\npopulation = 12\nmax_evals = 30\nthreads = 2\n",
-             mode, place.folder);
+    FREED char *text = formatted(
+        "[problem]\nkind = external\ncommand = sh tests/worker.sh %s %s/asked\nvariables = 3\nobjectives = 2\n"
+        "lower = 0\nupper = 20\nkinds = int, int, choice:a|b\ntimeout_s = 0.3\n"
+        "[search]\ninitial = 12\npopulation = 12\nmax_evals = 30\nthreads = 2\n",
+        mode, place.folder);
     write_in_place(name, text);
 }
 
@@ -37,8 +36,7 @@ TEST(simulate_gives_what_the_run_has_of_every_design_of_its_front)
     free(output_of("simulate @/kinds.ini --design @/kinds/front.csv --csv @/again.csv"));
     OWNED(run_free) Run h = run_in("kinds");
     OWNED(table_free) Table t;
-    char csv[PATH_MAX];
-    CHECK_OK(table_read(&t, path_of("again.csv", csv), TABLE_WORDS, &err), &err);
+    CHECK_OK(table_read(&t, there("again.csv"), TABLE_WORDS, &err), &err);
     assert_int_equal(t.n_rows, h.n_front);
     assert_less(0, h.n_front);
     for (size_t i = 0; i < t.n_rows; i++) {

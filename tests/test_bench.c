@@ -1,6 +1,4 @@
 /* The bench measures what it says: its scenes, its errors, its tables. */
-#include "check.h"
-
 #include "bench/sweep.h"
 #include "bench/promise.h"
 #include "bench/search/families.h"
@@ -14,13 +12,15 @@ typedef struct {
     Motion m;
 } Ground;
 
-static void ground_open(Ground *g)
+static Ground ground(void)
 {
-    Settings s;
-    paper_defaults(&s);
-    g->s = settings_scene(&s);
-    CHECK_OK(motion_load(&g->m, "builtin:kobe-like", UNIT_FROM_FILE, &err), &err);
-    CHECK_OK(motion_prepare(&g->m, s.motion.pga_g, s.motion.stretch, &err), &err);
+    const Settings s = paper_settings();
+    return (Ground){settings_scene(&s), motion_of("builtin:kobe-like", s.motion.pga_g, s.motion.stretch)};
+}
+
+static void ground_close(Ground *g)
+{
+    motion_free(&g->m);
 }
 
 TEST(irregular_gaps_are_the_same_every_time_and_within_their_bounds)
@@ -38,8 +38,7 @@ TEST(irregular_gaps_are_the_same_every_time_and_within_their_bounds)
 TEST(scenes_have_as_many_impacts_as_their_names_say)
 {
     static const long LEAST[] = {0, 1, 20, 10, 20}, MOST[] = {0, 1, 100000, 100000, 100000};
-    Ground g;
-    ground_open(&g);
+    OWNED(ground_close) Ground g = ground();
     for (int k = 0; k < N_BENCH_KINDS; k++) {
         OWNED(bench_case_close) BenchCase bench_case = {0};
         static TimedRun o;
@@ -49,15 +48,13 @@ TEST(scenes_have_as_many_impacts_as_their_names_say)
         assert_int_equal(o.result.outcome, RUN_OK);
         assert_true(o.result.impacts >= LEAST[k] && o.result.impacts <= MOST[k]);
     }
-    motion_free(&g.m);
 }
 
 TEST(an_error_is_zero_against_itself_and_first_order_in_a_change)
 {
     static TimedRun o, changed;
     OWNED(bench_case_close) BenchCase bench_case = {0};
-    Ground g;
-    ground_open(&g);
+    OWNED(ground_close) Ground g = ground();
     CHECK_OK(bench_case_open(&bench_case, bench_kind(2), &g.s, &g.m, 1, &err), &err);
     CHECK_OK(timed_run(&bench_case, ENGINE_ETDRK4, ACCURACY_STANDARD, 1e-3, &o, &err), &err);
     changed = o;
@@ -70,7 +67,6 @@ TEST(an_error_is_zero_against_itself_and_first_order_in_a_change)
     assert_close(some.objectives, 1e-3, 1e-9);
     assert_close(some.state, 1e-2, 1e-9);
     assert_close(some.first_s, 1e-3, 1e-9);
-    motion_free(&g.m);
 }
 
 TEST(a_sweep_has_a_row_for_every_setting_and_a_known_floor)
@@ -78,21 +74,18 @@ TEST(a_sweep_has_a_row_for_every_setting_and_a_known_floor)
     const SweepPlan plan = {1u << ENGINE_FAST | 1u << ENGINE_NEWMARK, 0.05};
     OWNED(sweep_free) Sweep sweep = {0};
     OWNED(bench_case_close) BenchCase bench_case = {0};
-    Ground g;
     FREED char *csv = NULL;
     size_t size;
-    ground_open(&g);
+    OWNED(ground_close) Ground g = ground();
     six_floors(&g.s.building, &g.s.core);
     CHECK_OK(bench_case_open(&bench_case, bench_kind(0), &g.s, &g.m, 1, &err), &err);
     bench_case.duration = 1;
-    FILE *quiet = fopen("/dev/null", "w");
-    assert_non_null(quiet);
+    FILE *quiet = opened("/dev/null", "w");
     CHECK_OK(sweep_run(&sweep, 0, &bench_case, &plan, quiet, &err), &err);
     fclose(quiet);
     assert_at_most(6, sweep.n);
     assert_less(sweep_floor(&sweep, 0), 1e-5);
     FILE *f = open_memstream(&csv, &size);
-    assert_non_null(f);
     sweep_write(&sweep, f);
     fclose(f);
     size_t lines = 0;
@@ -100,16 +93,14 @@ TEST(a_sweep_has_a_row_for_every_setting_and_a_known_floor)
         lines += *c == '\n';
     assert_int_equal(lines, sweep.n + 1);
     assert_int_equal(strncmp(csv, "case,engine,tolerance,seconds,error_objectives", 45), 0);
-    motion_free(&g.m);
 }
 
 TEST(scenes_of_the_promise_have_their_kind_of_gaps_and_repeat)
 {
     static const double LEAST[N_GAPS] = {1e-3, 0.05, 1e-3, 1e-3, 1e-3, 4.75e-3, 1e-3, 1e-3, 1e-3, 1e-3},
                         MOST[N_GAPS] = {0.5, 0.5, 5, 0.01, 0.5, 0.21, 0.5, 0.5, 0.5, 0.5};
-    Ground g;
     PromiseCase c, again;
-    ground_open(&g);
+    OWNED(ground_close) Ground g = ground();
     const PromisePlan plan = {.options = &g.s, .records = &g.m, .n_records = 1, .n_scenes = 10};
     for (long k = 0; k < plan.n_scenes * N_GAPS; k++) {
         const GapKind kind = (GapKind)(k % N_GAPS);
@@ -132,7 +123,6 @@ TEST(scenes_of_the_promise_have_their_kind_of_gaps_and_repeat)
         motion_free(&c.motion);
         motion_free(&again.motion);
     }
-    motion_free(&g.m);
 }
 
 TEST(quantiles_are_the_least_that_a_share_does_not_exceed)
@@ -145,24 +135,18 @@ TEST(quantiles_are_the_least_that_a_share_does_not_exceed)
 /* A tower of six soft floors in a folder of its own, whose swings close gaps of every kind. */
 static void write_soft_floors(BuildingOptions *o, char folder[])
 {
-    char path[64];
     assert_non_null(mkdtemp(folder));
     snprintf(o->model, sizeof o->model, "%s", folder);
-    snprintf(path, sizeof path, "%s/storeys.csv", folder);
-    FILE *f = fopen(path, "w");
-    assert_non_null(f);
-    fputs("height_m,mass_t,stiffness_kn_m\n", f);
-    for (int j = 0; j < 6; j++)
-        fputs("4,300,2e4\n", f);
-    fclose(f);
+    write_to(brief("%s/storeys.csv", folder), "height_m,mass_t,stiffness_kn_m\n4,300,2e4\n4,300,2e4\n4,300,2e4\n"
+                                              "4,300,2e4\n4,300,2e4\n4,300,2e4\n");
 }
 
 TEST(the_table_of_the_promise_has_a_row_for_every_accuracy)
 {
-    Ground g;
-    char *page = NULL, folder[] = "/tmp/bench-XXXXXX";
+    char folder[] = "/tmp/bench-XXXXXX";
+    FREED char *page = NULL;
     size_t size;
-    ground_open(&g);
+    OWNED(ground_close) Ground g = ground();
     write_soft_floors(&g.s.building, folder);
     g.m.n = (size_t)(20 / g.m.dt_s);
     FILE *f = open_memstream(&page, &size), *quiet = fopen("/dev/null", "w");
@@ -171,15 +155,11 @@ TEST(the_table_of_the_promise_has_a_row_for_every_accuracy)
     CHECK_OK(promise_write(&plan, f, quiet, &err), &err);
     fclose(f);
     fclose(quiet);
-    char path[64];
-    snprintf(path, sizeof path, "%s/storeys.csv", folder);
-    unlink(path);
+    unlink(brief("%s/storeys.csv", folder));
     rmdir(folder);
     print_message("%s", page);
     assert_words(page, "\nlog-uniform,\"coarse\",j1,1,1,", "\nwide,\"standard\",j3,1,1,",
                  "\nthree floors,\"true / estimated error\",edcs_pct,1,1,", "\ncvode,\"fine\",share_points,1,1,");
-    free(page);
-    motion_free(&g.m);
 }
 
 /* -- problems of other families -- */
@@ -210,13 +190,12 @@ static void check_nothing_is_beyond(const Course *reference, const Course *found
 /* Of the families with these names, on whose fronts a point of zero distance is not. */
 static void search_plainly(const char *names)
 {
-    Settings s;
-    settings_defaults(&s);
+    Settings s = default_settings();
     for (size_t i = 0; i < family_count(); i++) {
-        Problem p;
-        Course reference, found;
         if (!strstr(names, family(i)->name))
             continue;
+        OWNED(problem_close) Problem p;
+        OWNED(course_free) Course reference, found;
         CHECK_OK(family_open(&p, i, &err), &err);
         CHECK_OK(reference_make(&p, &reference, &err), &err);
         CHECK_OK(course_create(&found, 1000, p.n_obj, &err), &err);
@@ -224,9 +203,6 @@ static void search_plainly(const char *names)
         print_message("%s: %zu references\n", family(i)->name, reference.n);
         assert_at_most(20, reference.n);
         check_nothing_is_beyond(&reference, &found);
-        course_free(&found);
-        course_free(&reference);
-        problem_close(&p);
     }
 }
 
@@ -251,8 +227,7 @@ static double sum_of(const Course *c, size_t i)
 /* Of slab3: the least sum of objectives among the designs that succeed, after 200 evaluations and after the first 52. */
 TEST(a_search_makes_as_many_evaluations_as_it_may_and_betters_its_first_sample)
 {
-    Settings s;
-    settings_defaults(&s);
+    Settings s = default_settings();
     s.search.population = 40;
     size_t which = 0;
     while (strcmp(family(which)->name, "slab3") != 0)
@@ -277,10 +252,9 @@ TEST(a_search_makes_as_many_evaluations_as_it_may_and_betters_its_first_sample)
 /* Of dtlz2: simulations of the first sample, after the last iteration, with the last population, of the search. */
 static void loop_simulations(double error_max, size_t found[4], double volume[2])
 {
-    Settings s;
+    Settings s = default_settings();
     FREED char *text;
     size_t size, n = 0;
-    settings_defaults(&s);
     s.problem.kind = PROBLEM_EXTERNAL;
     snprintf(s.problem.command, sizeof s.problem.command, TEXTBOOK_WORKER " dtlz2 22 7");
     s.search.population = 20;

@@ -12,26 +12,21 @@
 
 TEST(a_browser_shows_reports_follows_a_run_and_asks_what_if)
 {
-    static const char *const COMMANDS[] = {
-        TOWER JUDGED "--set search.seed=2 --out @/runs/a",
-        TOWER JUDGED "--set search.seed=3 --out @/runs/b",
-        "optimize configs/quick.ini " DTLZ2(
-            5, 3) "--max-evals 90 --set search.population=16 --set search.initial=40 --out @/runs/c",
-        TOWER "--set design.step_thickness_m=0.01,0.02,0.03 --max-evals 40 --set sim.replicates=2 "
-              "--set search.fidelity=replicates --set sim.gap_tolerance_m=0.003 --set sim.uncertain=restitution=0.05 "
-              "--set motion.records=builtin:elcentro-like --set motion.pga_g=0 --set motion.factor=0.5 --out @/runs/d",
-        "report @/runs/a --out @/a.html",
-        "report @/runs/c --out @/c.html"};
-    char command[1024];
     if (!has_browser() || system("command -v node >/dev/null") != 0)
         skip();
-    for (size_t i = 0; i < sizeof COMMANDS / sizeof COMMANDS[0]; i++)
-        expect(0, "", COMMANDS[i]);
-    snprintf(command, sizeof command,
-             "d='%s'; node tests/serve/drive.mjs '%s' $d $d/a.html $d/c.html >$d/tried 2>&1 || { cat $d/tried; exit 1; "
-             "}; grep ' ms' $d/tried",
-             place.folder, getenv("IMTET"));
-    assert_int_equal(system(command), 0);
+    FOR_EACH (const char *, each, TOWER JUDGED "--set search.seed=2 --out @/runs/a",
+              TOWER JUDGED "--set search.seed=3 --out @/runs/b",
+              "optimize configs/quick.ini " DTLZ2(
+                  5, 3) "--max-evals 90 --set search.population=16 --set search.initial=40 --out @/runs/c",
+              TOWER
+              "--set design.step_thickness_m=0.01,0.02,0.03 --max-evals 40 --set sim.replicates=2 "
+              "--set search.fidelity=replicates --set sim.gap_tolerance_m=0.003 --set sim.uncertain=restitution=0.05 "
+              "--set motion.records=builtin:elcentro-like --set motion.pga_g=0 --set motion.factor=0.5 --out @/runs/d",
+              "report @/runs/a --out @/a.html", "report @/runs/c --out @/c.html")
+        expect(0, "", *each);
+    expect_shell("d='%s'; node tests/serve/drive.mjs '%s' $d $d/a.html $d/c.html >$d/tried 2>&1 || { cat $d/tried; "
+                 "exit 1; }; grep ' ms' $d/tried",
+                 place.folder, getenv("IMTET"));
 }
 
 SUITE(make_place, clear_place)

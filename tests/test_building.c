@@ -1,7 +1,6 @@
 /* Buildings from files against closed forms: frames, storeys, units, P-delta, damping. */
 #include "program.h"
 
-#include "base/linalg.h"
 #include "scene/frame.h"
 #include "scene_options.h"
 
@@ -20,11 +19,8 @@ static BuildingOptions folder_of(const char *name)
 __attribute__((format(printf, 3, 4))) static void write_file(const BuildingOptions *o, const char *name,
                                                              const char *format, ...)
 {
-    char path[OPTION_TEXT_MAX + 64];
     va_list args;
-    snprintf(path, sizeof path, "%s/%s", o->model, name);
-    FILE *f = fopen(path, "w");
-    assert_non_null(f);
+    FILE *f = opened(brief("%s/%s", o->model, name), "w");
     va_start(args, format);
     vfprintf(f, format, args);
     va_end(args);
@@ -40,11 +36,9 @@ static Building load(const BuildingOptions *o)
 
 static void expect_refusal_of(const BuildingOptions *o, const char *wanted)
 {
-    Building b;
     err = (Err){0};
-    const Status status = building_load(&b, o, &err);
-    if (status == STATUS_OK || !strstr(err.text, wanted))
-        fail_msg("status %d, said '%s', wanted '%s'", (int)status, err.text, wanted);
+    assert_int_not_equal(building_load(&(Building){0}, o, &err), STATUS_OK);
+    assert_words(err.text, wanted);
 }
 
 /* Displacements under a force at one floor. */
@@ -91,15 +85,12 @@ static const double STOREY = 3.5, EI = 2.1e11 * 4e-4, PER_M = 900;
 static BuildingOptions write_column(const char *name, int parts, const char *shear_area)
 {
     const BuildingOptions o = folder_of(name);
-    char nodes[4096] = "node,x_m,z_m,fix_x,fix_z,fix_rot,floor\nbase,0,0,1,1,1,0\n", elements[4096] = "";
-    size_t used = strlen(nodes), written = 0;
+    char nodes[4096] = "node,x_m,z_m,fix_x,fix_z,fix_rot,floor\nbase,0,0,1,1,1,0\n";
+    char elements[4096] = "element,node_i,node_j,section\n1,base,1,c\n";
     for (int k = 1; k <= N * parts; k++) {
-        used += (size_t)snprintf(nodes + used, sizeof nodes - used, "%d,0,%.17g,0,0,0,%d\n", k, STOREY * k / parts,
-                                 k % parts == 0 ? k / parts : 0);
-        if (k == 1)
-            written += (size_t)snprintf(elements, sizeof elements, "element,node_i,node_j,section\n1,base,1,c\n");
-        else
-            written += (size_t)snprintf(elements + written, sizeof elements - written, "%d,%d,%d,c\n", k, k - 1, k);
+        append(nodes, "%d,0,%.17g,0,0,0,%d\n", k, STOREY * k / parts, k % parts == 0 ? k / parts : 0);
+        if (k > 1)
+            append(elements, "%d,%d,%d,c\n", k, k - 1, k);
     }
     write_file(&o, "nodes.csv", "%s", nodes);
     write_file(&o, "elements.csv", "%s", elements);
@@ -163,16 +154,14 @@ TEST(a_portal_frame_has_its_textbook_stiffness)
     const double beams[] = {1e-5, 1e-4, 3e-3};
     for (int i = 0; i < 3; i++) {
         BuildingOptions o = write_portal("portal", beams[i], "1", "0,0");
-        Building b = load(&o);
+        OWNED(building_free) Building b = load(&o);
         assert_int_equal(b.n, 1);
         assert_close(b.K[0], portal_stiffness(beams[i]), 1e-5);
         assert_close(b.M[0], 50000, 1e-12);
         assert_close(b.storey_m[0], 4, 1e-12);
-        building_free(&b);
         o.rigid_floors = SWITCH_OFF; /* a beam of 50 m2 does not stretch either */
-        b = load(&o);
-        assert_close(b.K[0], portal_stiffness(beams[i]), 1e-4);
-        building_free(&b);
+        OWNED(building_free) Building elastic = load(&o);
+        assert_close(elastic.K[0], portal_stiffness(beams[i]), 1e-4);
     }
 }
 
@@ -243,12 +232,9 @@ TEST(faults_of_a_frame_name_file_line_and_what_to_do)
         {"elements.csv",
          "element,node_i,node_j,section,pin_i,pin_j\n1,A,C,column,1,0\n2,B,D,column,1,0\n3,C,D,beam,1,1\n",
          "node C (x 0 m, z 4 m) moves along x"},
-        {"ties.csv", "node,same_as,x\nC,A,1\n", "floor 1 cannot move by itself"},
-    };
+        {"ties.csv", "node,same_as,x\nC,A,1\n", "floor 1 cannot move by itself"}};
     for (size_t i = 0; i < sizeof BAD / sizeof BAD[0]; i++) {
-        char name[32];
-        snprintf(name, sizeof name, "bad%zu", i);
-        const BuildingOptions o = write_portal(name, 1e-4, "1", "0,0");
+        const BuildingOptions o = write_portal(brief("bad%zu", i), 1e-4, "1", "0,0");
         write_file(&o, BAD[i].file, "%s", BAD[i].text);
         expect_refusal_of(&o, BAD[i].wanted);
     }
@@ -264,8 +250,7 @@ TEST(storeys_that_shear_have_the_frequencies_of_a_chain)
         BuildingOptions o = folder_of(form ? "storeys_kn" : "storeys");
         char rows[1024] = "";
         for (int j = 0; j < N; j++)
-            snprintf(rows + strlen(rows), sizeof rows - strlen(rows), form ? "%g;%g;%g\n" : "%g,%g,%g\n", 3.0 + 0.5 * j,
-                     form ? m / 1e3 : m, form ? k / 1e3 : k);
+            append(rows, form ? "%g;%g;%g\n" : "%g,%g,%g\n", 3.0 + 0.5 * j, form ? m / 1e3 : m, form ? k / 1e3 : k);
         write_file(&o, "storeys.csv", "%s\n%s", HEADS[form], rows);
         OWNED(building_free) Building b = load(&o);
         assert_int_equal(b.n, N);
@@ -283,10 +268,7 @@ TEST(storeys_that_bend_and_shear_deflect_as_timoshenkos_cantilever)
         BuildingOptions o = folder_of(shears ? "both" : "bending");
         char rows[1024] = "";
         for (int j = 0; j < N; j++)
-            if (shears)
-                snprintf(rows + strlen(rows), sizeof rows - strlen(rows), "%g,2e5,%g,%g\n", h, k, EI_building);
-            else
-                snprintf(rows + strlen(rows), sizeof rows - strlen(rows), "%g,2e5,%g\n", h, EI_building);
+            append(rows, shears ? "%1$g,2e5,%3$g,%2$g\n" : "%1$g,2e5,%2$g\n", h, EI_building, k);
         write_file(&o, "storeys.csv", "height_m,mass_kg,%sbending_n_m2\n%s", shears ? "stiffness_n_m," : "", rows);
         OWNED(building_free) Building b = load(&o);
         double u[N];
@@ -297,23 +279,24 @@ TEST(storeys_that_bend_and_shear_deflect_as_timoshenkos_cantilever)
 
 TEST(faults_of_storeys_are_named)
 {
-    BuildingOptions o = folder_of("bad_storeys");
-    write_file(&o, "storeys.csv", "height_m,mass_kg\n3,1e5\n");
-    expect_refusal_of(&o, "storeys.csv:2: has no stiffness_n_m");
-    write_file(&o, "storeys.csv", "height_m,stiffness_n_m\n3,1e8\n");
-    expect_refusal_of(&o, "storeys.csv:2: has no mass_kg or mass_t");
-    write_file(&o, "storeys.csv", "height_m,mass_kg,stiffness_n_m,yield_drift\n3,1e5,1e8,0.01\n3,1e5,1e8,1.5\n");
-    expect_refusal_of(&o, "storeys.csv:3: yield_drift is 1.5; it is drift over height, 1 at most");
-    write_file(&o, "storeys.csv", "height_m,mass_kg,stiffness_n_m,yield_drift\n3,1e5,1e8,0\n");
-    expect_refusal_of(&o, "storeys.csv:2: yield_drift is 0; it must be above 0");
-    write_file(&o, "storeys.csv", "height_m,mass_kg,stiffness_n_m\n3,1e5,1e8\n3,1e5,-1\n");
-    expect_refusal_of(&o, "storeys.csv:3: stiffness_n_m is -1");
-    write_file(&o, "storeys.csv", "height_m,mass_kg,stiffness_n_m\n4.5,1e5,1e8\n4500,1e5,1e8\n");
-    expect_refusal_of(&o, "storeys.csv:3: height_m is 4500; a storey has 0.1 to 100 m: write metres");
-    write_file(&o, "storeys.csv", "height_m,mass_kg,mass_t,stiffness_n_m\n3,1e5,100,1e8\n");
-    expect_refusal_of(&o, "has both mass_kg and mass_t");
-    write_file(&o, "storeys.csv", "height_m;mass_t;stiffness_kn_m\n3,5;100;200.000\n"); /* a mark of thousands */
-    expect_refusal_of(&o, "storeys.csv:2: decimal points and decimal commas are mixed");
+    static const char *const BAD[][2] = {
+        {"height_m,mass_kg\n3,1e5\n", "storeys.csv:2: has no stiffness_n_m"},
+        {"height_m,stiffness_n_m\n3,1e8\n", "storeys.csv:2: has no mass_kg or mass_t"},
+        {"height_m,mass_kg,stiffness_n_m,yield_drift\n3,1e5,1e8,0.01\n3,1e5,1e8,1.5\n",
+         "storeys.csv:3: yield_drift is 1.5; it is drift over height, 1 at most"},
+        {"height_m,mass_kg,stiffness_n_m,yield_drift\n3,1e5,1e8,0\n",
+         "storeys.csv:2: yield_drift is 0; it must be above 0"},
+        {"height_m,mass_kg,stiffness_n_m\n3,1e5,1e8\n3,1e5,-1\n", "storeys.csv:3: stiffness_n_m is -1"},
+        {"height_m,mass_kg,stiffness_n_m\n4.5,1e5,1e8\n4500,1e5,1e8\n",
+         "storeys.csv:3: height_m is 4500; a storey has 0.1 to 100 m: write metres"},
+        {"height_m,mass_kg,mass_t,stiffness_n_m\n3,1e5,100,1e8\n", "has both mass_kg and mass_t"},
+        {"height_m;mass_t;stiffness_kn_m\n3,5;100;200.000\n", /* a mark of thousands */
+         "storeys.csv:2: decimal points and decimal commas are mixed"}};
+    const BuildingOptions o = folder_of("bad_storeys");
+    for (size_t i = 0; i < N_OF(BAD); i++) {
+        write_file(&o, "storeys.csv", "%s", BAD[i][0]);
+        expect_refusal_of(&o, BAD[i][1]);
+    }
 }
 
 TEST(a_folder_holds_one_kind_of_model)
@@ -333,14 +316,12 @@ TEST(heights_may_be_listed_storey_by_storey)
     write_file(&o, "K.csv", "2e8,-1e8\n-1e8,1e8\n");
     write_file(&o, "M.csv", "2e5,0\n0,2e5\n");
     o.heights_m = LIST_OF(4.5, 3.25);
-    Building b = load(&o);
-    assert_close(b.storey_m[0], 4.5, 1e-15);
-    assert_close(b.storey_m[1], 3.25, 1e-15);
-    building_free(&b);
+    OWNED(building_free) Building listed = load(&o);
+    assert_close(listed.storey_m[0], 4.5, 1e-15);
+    assert_close(listed.storey_m[1], 3.25, 1e-15);
     o.heights_m = LIST_OF(4.5);
-    b = load(&o);
-    assert_same_number(b.storey_m[1], 4.5);
-    building_free(&b);
+    OWNED(building_free) Building alike = load(&o);
+    assert_same_number(alike.storey_m[1], 4.5);
     o.heights_m = LIST_OF(4.5, 4, 3);
     expect_refusal_of(&o, "has 3 heights; the building has 2 storeys");
 }
@@ -350,13 +331,11 @@ TEST(heights_may_be_listed_storey_by_storey)
 TEST(p_delta_softens_the_tower_to_its_known_frequency)
 {
     BuildingOptions o = scene_defaults().building;
-    Building b = load(&o);
-    assert_close(b.omega[0] / (2 * M_PI), 0.2643, 2e-4);
-    building_free(&b);
+    OWNED(building_free) Building plain = load(&o);
+    assert_close(plain.omega[0] / (2 * M_PI), 0.2643, 2e-4);
     o.p_delta = SWITCH_ON;
-    b = load(&o);
-    assert_close(b.omega[0] / (2 * M_PI), 0.2553, 2e-4);
-    building_free(&b);
+    OWNED(building_free) Building soft = load(&o);
+    assert_close(soft.omega[0] / (2 * M_PI), 0.2553, 2e-4);
 }
 
 TEST(p_delta_of_one_storey_is_the_inverted_pendulum)
@@ -377,8 +356,7 @@ static int stands(int n, double weight, double bending)
     BuildingOptions o = folder_of("euler");
     char rows[4096] = "";
     for (int j = 0; j < n; j++)
-        snprintf(rows + strlen(rows), sizeof rows - strlen(rows), "%.17g,%.17g,%g\n", 24.0 / n,
-                 j < n - 1 ? 1e-6 : weight / 9.81, bending);
+        append(rows, "%.17g,%.17g,%g\n", 24.0 / n, j < n - 1 ? 1e-6 : weight / 9.81, bending);
     write_file(&o, "storeys.csv", "height_m,mass_kg,bending_n_m2\n%s", rows);
     o.p_delta = SWITCH_ON;
     OWNED(building_free) Building b;
@@ -446,9 +424,9 @@ TEST(a_building_of_the_most_floors_is_simulated_alike_by_two_engines)
     char rows[8192] = "height_m,mass_kg,stiffness_n_m\n", head[2048] = "", gaps[2048] = "";
     for (int j = 0; j < FLOORS_MAX; j++) {
         const int is_near = j % 18 == 0 || j == FLOORS_MAX - 1;
-        snprintf(rows + strlen(rows), sizeof rows - strlen(rows), "3.8,4e5,%g\n", 6e9 * (1 - 0.8 * j / FLOORS_MAX));
-        snprintf(head + strlen(head), sizeof head - strlen(head), "gap_%02d_m,", j + 1);
-        snprintf(gaps + strlen(gaps), sizeof gaps - strlen(gaps), "%g,", is_near ? 5e-6 : 0.01);
+        append(rows, "3.8,4e5,%g\n", 6e9 * (1 - 0.8 * j / FLOORS_MAX));
+        append(head, "gap_%02d_m,", j + 1);
+        append(gaps, "%g,", is_near ? 5e-6 : 0.01);
     }
     write_file(&o, "storeys.csv", "%s", rows);
     write_file(&o, "design.csv", "%st_base_m,t_top_m\n%s0.02,0.01\n", head, gaps);
@@ -459,10 +437,8 @@ TEST(a_building_of_the_most_floors_is_simulated_alike_by_two_engines)
                        "@/tall/push.csv --set motion.stretch=1 --set sim.duration_s=0.15 --set sim.accuracy=fine --set "
                        "sim.engine=%s --json --contacts @/contacts.csv",
                        i ? "cvode" : "fast");
-        OWNED(table_free) Table contacts;
-        FREED char *path = in_place("contacts.csv");
+        OWNED(table_free) Table contacts = table_of("contacts.csv");
         double highest = 0;
-        CHECK_OK(table_read(&contacts, path, 1, &err), &err);
         for (size_t k = 0; k < contacts.n_rows; k++)
             highest = fmax(highest, contacts.values[k * contacts.n_cols + (size_t)table_column(&contacts, "floor")]);
         assert_same_number(highest, FLOORS_MAX);
@@ -505,7 +481,7 @@ TEST(a_frame_of_which_no_displacement_is_named_keeps_all_that_have_mass)
 {
     BuildingOptions o = write_column("free", 1, "0");
     o.modes = ALL_MODES;
-    Building b = load(&o);
+    OWNED(building_free) Building b = load(&o);
     const double L = STOREY * N, beta_l[] = {1.875104069, 4.694091133, 7.854757438, 10.99554073};
     assert_int_equal(b.model.n, 3 * N);
     for (int i = 0, bending = 0; bending < 4; i++)
@@ -515,13 +491,11 @@ TEST(a_frame_of_which_no_displacement_is_named_keeps_all_that_have_mass)
             assert_close(b.model.omega[i], pow(beta_l[bending] / L, 2) * sqrt(EI / PER_M) * (1 + error), 3e-4);
             bending++;
         }
-    building_free(&b);
     o = write_portal("lumped", 1e-4, "1", "0,0");
     o.modes = ALL_MODES;
-    b = load(&o); /* rotations have no mass: they are condensed */
-    assert_int_equal(b.model.n, 3);
-    assert_close(b.model.omega[0], b.omega[0], 1e-9);
-    building_free(&b);
+    OWNED(building_free) Building lumped = load(&o); /* rotations have no mass: they are condensed */
+    assert_int_equal(lumped.model.n, 3);
+    assert_close(lumped.model.omega[0], lumped.omega[0], 1e-9);
 }
 
 /* Sum of what the first twelve horizontal frequencies miss, relative; higher ones mix with vertical ones. */
@@ -601,13 +575,11 @@ TEST(a_portal_of_heavy_columns_responds_as_its_full_model_in_two_engines)
     enum { PARTS = 8 };
     const BuildingOptions o = folder_of("columns");
     char nodes[1024] = "node,x_m,z_m,fix_x,fix_z,fix_rot,floor\n", elements[1024] = "element,node_i,node_j,section\n";
-    size_t used = strlen(nodes), written = strlen(elements);
     for (int k = 0; k <= 2 * PARTS + 1; k++) {
         const int left = k <= PARTS, up = left ? k : k - PARTS - 1;
-        used += (size_t)snprintf(nodes + used, sizeof nodes - used, "%d,%d,%g,%d,%d,%d,%d\n", k, left ? 0 : 6, 0.5 * up,
-                                 up == 0, up == 0, up == 0, up == PARTS);
+        append(nodes, "%d,%d,%g,%d,%d,%d,%d\n", k, left ? 0 : 6, 0.5 * up, !up, !up, !up, up == PARTS);
         if (up > 0)
-            written += (size_t)snprintf(elements + written, sizeof elements - written, "%d,%d,%d,c\n", k, k - 1, k);
+            append(elements, "%d,%d,%d,c\n", k, k - 1, k);
     }
     write_file(&o, "nodes.csv", "%s", nodes);
     write_file(&o, "elements.csv", "%sb,%d,%d,b\n", elements, PARTS, 2 * PARTS + 1);
@@ -618,21 +590,16 @@ TEST(a_portal_of_heavy_columns_responds_as_its_full_model_in_two_engines)
     static const char *const CASES[] = {"far.csv --set sim.engine=fast --set building.modes=0",
                                         "far.csv --set sim.engine=fast --set building.modes=100000",
                                         "near.csv --set sim.engine=fast", "near.csv --set sim.engine=cvode"};
-    static const char *const SAME[] = {"j1_m", "j3_g", "input_energy_j", "ed1_pct", "base_shear_n"};
     json_t *r[4];
     for (int i = 0; i < 4; i++) {
-        char command[512];
-        snprintf(command, sizeof command,
-                 "simulate configs/quick.ini --set building.model=@/columns --set sim.duration_s=20 --set "
-                 "sim.accuracy=fine --json "
-                 "--design @/columns/%s",
-                 CASES[i]);
-        r[i] = json_of("%s", command);
+        r[i] = json_of("simulate configs/quick.ini --set building.model=@/columns --set sim.duration_s=20 --set "
+                       "sim.accuracy=fine --json --design @/columns/%s",
+                       CASES[i]);
     }
     assert_close(number(r[0], "j1_m"), number(r[1], "j1_m"), 0.02);
     assert_at_most(2, number(r[2], "impacts"));
-    for (size_t k = 0; k < sizeof SAME / sizeof SAME[0]; k++)
-        assert_close(number(r[2], SAME[k]), number(r[3], SAME[k]), 1e-4);
+    FOR_EACH (const char *, same, "j1_m", "j3_g", "input_energy_j", "ed1_pct", "base_shear_n")
+        assert_close(number(r[2], *same), number(r[3], *same), 1e-4);
     for (int i = 0; i < 4; i++)
         json_decref(r[i]);
 
@@ -640,22 +607,18 @@ TEST(a_portal_of_heavy_columns_responds_as_its_full_model_in_two_engines)
     const double mass = 6250 * (8 - 2 * 0.5 * (1 - 156.0 / 420)) + 1666.7 * 6;
     double shear[2];
     for (int i = 0; i < 2; i++) {
-        char command[256];
-        snprintf(command, sizeof command, "check configs/quick.ini --set building.model=@/columns --json --set %s",
-                 strstr(CASES[i], "building.modes"));
-        json_t *all = json_of("%s", command), *b = json_object_get(all, "building");
+        json_auto_t *all = json_of("check configs/quick.ini --set building.model=@/columns --json --set %s",
+                                   strstr(CASES[i], "building.modes"));
+        const json_t *b = json_object_get(all, "building");
         assert_close(number(b, "mass_kg"), mass, 1e-9);
         shear[i] = number(b, "base_shear_share");
-        json_decref(all);
     }
     assert_close(shear[0], shear[1], 0.02);
-    char *said = output_of("building @/columns"), wanted[64];
+    FREED char *said = output_of("building @/columns");
     json_auto_t *all = json_of("building @/columns --json");
     const double floor = number(json_array_get(json_object_get(all, "floors"), 0), "mass_kg");
-    snprintf(wanted, sizeof wanted, "%.6g t of it are between the floors\n", 1e-3 * (mass - floor));
     assert_true(floor > 1666.7 * 6 && floor < 0.8 * mass);
-    assert_non_null(strstr(said, wanted));
-    free(said);
+    assert_words(said, brief("%.6g t of it are between the floors\n", 1e-3 * (mass - floor)));
 }
 
 TEST(vertical_modes_of_the_full_model_resemble_none_of_the_floors)
@@ -682,17 +645,15 @@ TEST(p_delta_and_damping_reach_the_full_model)
     o.modes = ALL_MODES;
     o.p_delta = SWITCH_ON;
     o.damping_model = DAMPING_RAYLEIGH;
-    Building b = load(&o);
-    assert_close(b.model.omega[0], b.omega[0], 1e-5);
-    assert_close(b.omega[0] / (2 * M_PI), 0.2553, 2e-4);
-    assert_close(b.model.zeta[0], 0.03, 1e-4);
-    building_free(&b);
+    OWNED(building_free) Building rayleigh = load(&o);
+    assert_close(rayleigh.model.omega[0], rayleigh.omega[0], 1e-5);
+    assert_close(rayleigh.omega[0] / (2 * M_PI), 0.2553, 2e-4);
+    assert_close(rayleigh.model.zeta[0], 0.03, 1e-4);
     o.damping_model = DAMPING_MODAL;
     o.damping = LIST_OF(0.01, 0.02, 0.05);
-    b = load(&o);
+    OWNED(building_free) Building b = load(&o);
     for (int i = 0; i < b.model.n; i++)
         assert_same_number(b.model.zeta[i], (b.model.like[i] == 0 ? 0.01 : b.model.like[i] == 1 ? 0.02 : 0.05));
-    building_free(&b);
 }
 
 /* Three columns, each with a mass, that soft beams hold together: the middle one knows little of the others. */
@@ -714,22 +675,18 @@ TEST(a_floor_that_one_node_stands_for_is_warned_of_where_periods_move)
     OWNED(building_free) Building full = load(&o);
     const double is = 2 * M_PI / one.model.omega[0], should = 2 * M_PI / full.model.omega[0];
     assert_true(fabs(is / should - 1) > 0.01);
-    char wanted[128], command[256];
     static const char *const COMMANDS[] = {"building @/soft", "check configs/quick.ini --set building.model=@/soft"};
     for (size_t i = 0; i < 2; i++) {
-        Said s;
-        snprintf(command, sizeof command, "%s --set building.rigid_floors=off", COMMANDS[i]);
-        snprintf(wanted, sizeof wanted, "period 1 is %.4g s with one node for each floor, %.4g s in the full", is,
-                 should);
+        OWNED(forget) Said s, all;
+        FREED char *command = formatted("%s --set building.rigid_floors=off", COMMANDS[i]);
+        FREED char *wanted =
+            formatted("period 1 is %.4g s with one node for each floor, %.4g s in the full", is, should);
         run(&s, "%s", command);
         assert_true(strstr(s.err, wanted) || strstr(s.out, wanted));
-        forget(&s);
-        run(&s, "%s --set building.modes=100", command);
-        assert_false(strstr(s.err, "one node") || strstr(s.out, "one node"));
-        forget(&s);
+        run(&all, "%s --set building.modes=100", command);
+        assert_false(strstr(all.err, "one node") || strstr(all.out, "one node"));
     }
-    FREED char *text = output_of("building @/soft --json --set building.rigid_floors=off --set building.modes=100");
-    json_auto_t *all = json_loads(text, 0, NULL);
+    json_auto_t *all = json_of("building @/soft --json --set building.rigid_floors=off --set building.modes=100");
     assert_close(number(json_array_get(json_object_get(all, "modes"), 0), "hz"), 1 / should, 1e-9);
 }
 
@@ -755,24 +712,21 @@ TEST(the_full_model_is_simulated_alike_by_two_engines)
     const BuildingOptions o = folder_of("design");
     json_t *r[2];
     for (int j = 0; j < 20; j++)
-        snprintf(design + strlen(design), sizeof design - strlen(design), "gap_%02d_m,", j + 1);
+        append(design, "gap_%02d_m,", j + 1);
     strcat(design, "t_base_m,t_top_m\n");
     for (int j = 0; j < 20; j++)
-        snprintf(design + strlen(design), sizeof design - strlen(design), "%g,", 0.001 + 0.0005 * ((j * 7) % 20));
+        append(design, "%g,", 0.001 + 0.0005 * ((j * 7) % 20));
     write_file(&o, "design.csv", "%s0.02,0.008\n", design);
     write_shaking("shaking.csv");
-    for (int i = 0; i < 2; i++) {
+    for (int i = 0; i < 2; i++)
         r[i] = json_of("simulate configs/quick.ini --set building.modes=100000 --design @/design/design.csv --record "
                        "@/shaking.csv --set motion.stretch=1 --set sim.duration_s=0.8 --set sim.accuracy=fine --set "
                        "sim.engine=%s --json",
                        i ? "cvode" : "fast");
-    }
-    static const char *const SAME[] = {"j1_m", "j2_m", "ed1_pct", "edcs_pct", "base_shear_n", "contact_force_max_n"};
-
     assert_at_most(10, number(r[0], "impacts"));
     assert_int_equal((int)number(r[0], "impacts"), (int)number(r[1], "impacts"));
-    for (size_t k = 0; k < sizeof SAME / sizeof SAME[0]; k++)
-        assert_close(number(r[0], SAME[k]), number(r[1], SAME[k]), 1e-4);
+    FOR_EACH (const char *, same, "j1_m", "j2_m", "ed1_pct", "edcs_pct", "base_shear_n", "contact_force_max_n")
+        assert_close(number(r[0], *same), number(r[1], *same), 1e-4);
     assert_close(number(r[0], "j3_g"), number(r[1], "j3_g"), 1e-3);
     json_decref(r[0]);
     json_decref(r[1]);
@@ -812,13 +766,10 @@ TEST(a_drawing_shows_names_as_text_and_storeys_as_a_stick)
     if (!has_browser())
         skip();
     free(output_of("building @/named --svg @/named.svg"));
-    char *svg = read_in_place("named.svg");
-    assert_non_null(strstr(svg, "<title>&lt;b&gt;: column</title>"));
-    free(svg);
+    expect_file("named.svg", "<title>&lt;b&gt;: column</title>");
     expect_output("20 floors", "building appendix --svg @/stick.svg --set building.p_delta=on");
-    svg = read_in_place("stick.svg");
+    FREED char *svg = read_in_place("stick.svg");
     assert_int_equal(count(svg, "<title>floor "), 20);
-    free(svg);
     expect(66, "nowhere: there is no such file", "building nowhere");
 }
 

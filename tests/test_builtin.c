@@ -1,9 +1,5 @@
 /* Generated motions: what they promise by themselves, and how near they are to the records that they stand in for. */
-#include "check.h"
-
-#include "motion/spectrum.h"
 #include "scene_options.h"
-#include "sim/sim.h"
 
 enum { N_MOTIONS = 3, N_BUILDINGS = 2, N_PERIODS = 60 };
 
@@ -19,45 +15,31 @@ static const struct {
      3.0,
      8.27,
      24,
-     {{1.749, 0.1589, 0.815}, {1.615, 0.1660, 0.809}}},
-};
+     {{1.749, 0.1589, 0.815}, {1.615, 0.1660, 0.809}}}};
 
 static const char *const BUILDINGS[N_BUILDINGS] = {"guyan", "appendix"};
 
 /* J1 [m], J2 [m], J3 [g] of the building without a core. */
 static void building_alone(const Motion *m, const char *model, double J[3])
 {
-    Scene *scene;
-    SimWorker *worker;
-    SimResult r;
     const double none[FLOORS_MAX + 2] = {0};
     SceneOptions s = paper_scene();
     snprintf(s.building.model, sizeof s.building.model, "%s", model);
-    CHECK_OK(scene_create(&scene, &s, m, &err), &err);
-    CHECK_OK(sim_worker_create(&worker, scene, &err), &err);
-    CHECK_OK(sim_run(worker, SCENE_NO_CORE, none, &r, &err), &err);
-    assert_int_equal(r.outcome, RUN_OK);
+    const SimResult r = run_once(&s, m, SCENE_NO_CORE, none);
     J[0] = r.j1_m;
     J[1] = r.j2_m;
     J[2] = r.j3_g;
-    sim_worker_free(worker);
-    scene_free(scene);
 }
 
 static Motion prepared(int k)
 {
-    Motion m;
-    CHECK_OK(motion_load(&m, MOTIONS[k].source, UNIT_FROM_FILE, &err), &err);
-    CHECK_OK(motion_prepare(&m, 0.3, MOTIONS[k].stretch, &err), &err);
-    return m;
+    return motion_of(MOTIONS[k].source, 0.3, MOTIONS[k].stretch);
 }
 
 /* 0 where there is no such record */
 static int prepared_record(int k, Motion *m)
 {
-    char path[128];
-    snprintf(path, sizeof path, "../shared/records/%s", MOTIONS[k].record);
-    const Status s = motion_load(m, path, UNIT_FROM_FILE, &err);
+    const Status s = motion_load(m, brief("../shared/records/%s", MOTIONS[k].record), UNIT_FROM_FILE, &err);
     if (s == STATUS_MISSING)
         return 0;
     CHECK_OK(s, &err);
@@ -141,7 +123,7 @@ TEST(the_answers_listed_above_are_those_of_the_records)
 {
     int n_read = 0;
     for (int k = 0; k < N_MOTIONS; k++) {
-        Motion m;
+        OWNED(motion_free) Motion m;
         if (!prepared_record(k, &m))
             continue;
         n_read++;
@@ -151,12 +133,9 @@ TEST(the_answers_listed_above_are_those_of_the_records)
             for (int i = 0; i < 3; i++)
                 assert_close(J[i], MOTIONS[k].J[b][i], 2e-3);
         }
-        motion_free(&m);
     }
-    if (n_read == 0) {
-        print_message("skipped: there are no records in ../shared/records\n");
-        skip();
-    }
+    if (n_read == 0)
+        need_file("../shared/records");
 }
 
 TEST(spectra_are_near_those_of_the_records)
@@ -185,10 +164,8 @@ TEST(spectra_are_near_those_of_the_records)
         motion_free(&m);
         motion_free(&record);
     }
-    if (n_read == 0) {
-        print_message("skipped: there are no records in ../shared/records\n");
-        skip();
-    }
+    if (n_read == 0)
+        need_file("../shared/records");
 }
 
 SUITE(NULL, NULL)

@@ -1,12 +1,7 @@
 /* Bumpers: the force of steel and spring in series, and impacts on it in both engines. */
-#include "check.h"
-
 #include "bench/stability/bob.h"
 
-#include "base/random.h"
 #include "scene_options.h"
-#include "sim/engine.h"
-#include "sim/sim.h"
 
 static const double STEEL = 4.865e10; /* [N/m^1.5] */
 
@@ -153,7 +148,7 @@ static SimResult strike(const Blow *b, Engine engine, Accuracy accuracy)
     CHECK_OK(engine_entry(engine)->run(&model, &motion, &(EngineOptions){.duration = 9 * dt, .accuracy = accuracy},
                                        &result, &err),
              &err);
-    assert_int_equal(result.outcome, RUN_OK);
+    assert_ran(&result);
     assert_int_equal(result.impacts, 1);
     return result;
 }
@@ -231,22 +226,10 @@ TEST(an_undamped_soft_bumper_is_a_spring_in_depth_and_force)
 
 static void run_tower(const SceneOptions *o, SimResult *r)
 {
-    OWNED(motion_free) Motion motion;
-    Scene *scene;
-    SimWorker *worker;
     double x[22];
-    CHECK_OK(motion_load(&motion, "builtin:kobe-like", UNIT_FROM_FILE, &err), &err);
-    CHECK_OK(motion_prepare(&motion, 0.3, 1.5, &err), &err);
-    CHECK_OK(scene_create(&scene, o, &motion, &err), &err);
-    CHECK_OK(sim_worker_create(&worker, scene, &err), &err);
-    for (int j = 0; j < 20; j++)
-        x[j] = 0.002 * (j + 1);
-    x[20] = 0.012;
-    x[21] = 0.0064;
-    CHECK_OK(sim_run(worker, SCENE_IMPACT, x, r, &err), &err);
-    sim_worker_free(worker);
-    scene_free(scene);
-    assert_int_equal(r->outcome, RUN_OK);
+    OWNED(motion_free) Motion motion = motion_of("builtin:kobe-like", 0.3, 1.5);
+    paper_design(x, 0.002, 0.002);
+    *r = run_once(o, &motion, SCENE_IMPACT, x);
 }
 
 TEST(softer_bumpers_press_less_and_a_thin_one_bottoms_out)

@@ -25,10 +25,9 @@ TEST(optimize_and_polish_answer_as_json)
                                  "--max-evals 60 --set sim.duration_s=4 --set search.initial=30 "
                                  "--set search.population=16 --out @/spoken --json");
     json_t *knee = json_object_get(study, "knee");
-    char design[64];
     assert_int_equal(json_integer_value(json_object_get(study, "simulated")), 60);
-    snprintf(design, sizeof design, "simulate @/spoken/settings.ini --design @/spoken:%" JSON_INTEGER_FORMAT " --json",
-             json_integer_value(json_object_get(knee, "design")));
+    FREED char *design = formatted("simulate @/spoken/settings.ini --design @/spoken:%" JSON_INTEGER_FORMAT " --json",
+                                   json_integer_value(json_object_get(knee, "design")));
     json_auto_t *alone = json_of("%s", design);
     assert_close(number(knee, "j1_m"), number(alone, "j1_m"), 1e-3);
     assert_at_most(number(json_object_get(json_object_get(study, "best"), "j1_m"), "j1_m"), number(knee, "j1_m"));
@@ -126,8 +125,6 @@ static void write_five_floors(double k, double m)
             nk += (size_t)snprintf(stiffness + nk, sizeof stiffness - nk, "%g%s", v, j < 4 ? "," : "\n");
             nm += (size_t)snprintf(mass + nm, sizeof mass - nm, "%g%s", i == j ? m : 0, j < 4 ? "," : "\n");
         }
-    FREED char *folder = in_place("five");
-    assert_int_equal(mkdir(folder, 0777), 0);
     write_in_place("five/K.csv", stiffness);
     write_in_place("five/M.csv", mass);
     write_in_place("five.ini", "[building]\nmodel = five\nheights_m = 4, 3\n[core]\nwidth_m = 5\n"

@@ -97,11 +97,9 @@ static int holds(int at, int *is_over)
     const long code = strtol(text, &rest, 10);
     int right = 1;
     if (strncmp(text, "file ", 5) == 0) {
-        char command[512];
         rest = text + 5;
         name = part(&rest);
-        snprintf(command, sizeof command, "mkdir -p \"$(dirname '%s/%s')\"", place.folder, name);
-        right = ran(at, NULL, 0, NULL, command);
+        right = ran(at, NULL, 0, NULL, brief("mkdir -p \"$(dirname '%s/%s')\"", place.folder, name));
         write_in_place(name, unescape(rest));
     } else if (strncmp(text, "run ", 4) == 0) {
         right = ran(at, "|", 0, NULL, text + 4);

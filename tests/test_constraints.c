@@ -4,12 +4,11 @@
 /* Of mode `bounded` the front is x2 = 0, x3 = a, x1 = 6 .. 15 among 882 designs. */
 static void write_bounded(const char *name, const char *mode, const char *search)
 {
-    char text[2 * PATH_MAX];
-    snprintf(text, sizeof text,
-             "[problem]\nkind = external\ncommand = sh tests/worker.sh %s\nvariables = 3\nobjectives = 2\nlower = 0\n"
-             "upper = 20\nkinds = int, int, choice:a|b\n[search]\ninitial = 16\npopulation = 12\nmax_evals = 90\n"
-             "threads = 1\n%s",
-             mode, search);
+    FREED char *text = formatted(
+        "[problem]\nkind = external\ncommand = sh tests/worker.sh %s\nvariables = 3\nobjectives = 2\nlower = 0\n"
+        "upper = 20\nkinds = int, int, choice:a|b\n[search]\ninitial = 16\npopulation = 12\nmax_evals = 90\n"
+        "threads = 1\n%s",
+        mode, search);
     write_in_place(name, text);
 }
 
@@ -42,14 +41,10 @@ TEST(the_front_is_that_of_the_designs_whose_constraints_are_kept)
 
 TEST(every_design_is_asked_for_once_the_first_one_too)
 {
-    char mode[PATH_MAX];
     int asked[91] = {0}, id;
-    snprintf(mode, sizeof mode, "bounded %.1000s/ids", place.folder);
-    write_bounded("ids.ini", mode, "");
+    write_bounded("ids.ini", brief("bounded %.1000s/ids", place.folder), "");
     free(output_of("optimize @/ids.ini --out @/asked"));
-    char path[PATH_MAX];
-    FILE *f = fopen(path_of("ids", path), "r");
-    assert_non_null(f);
+    FILE *f = opened(there("ids"), "r");
     while (fscanf(f, "%d", &id) == 1)
         asked[id]++;
     fclose(f);
@@ -74,13 +69,9 @@ TEST(where_the_first_designs_fail_the_first_that_succeeds_says_how_many)
     write_in_place("late.sh", "while read -r line; do id=${line#*:}; id=${id%%,*}\n"
                               "[ $id -lt 4 ] && echo \"{\\\"id\\\":$id,\\\"error\\\":\\\"early\\\"}\" || "
                               "echo \"{\\\"id\\\":$id,\\\"f\\\":[$id,1],\\\"g\\\":[$id]}\"\ndone\n");
-    char *text = in_place("late.sh"), line[PATH_MAX + 64];
-    snprintf(line, sizeof line, "--set 'problem.command=sh %s'", text);
-    free(text);
     write_bounded("late.ini", "bounded", "");
-    char arguments[PATH_MAX + 256];
-    snprintf(arguments, sizeof arguments, "optimize @/late.ini --out @/late %s", line);
-    expect(69, "search.limits: none of 87 designs keeps g<=0; those that come nearest", arguments);
+    expect(69, "search.limits: none of 87 designs keeps g<=0; those that come nearest",
+           "optimize @/late.ini --out @/late --set 'problem.command=sh @/late.sh'");
     OWNED(run_free) Run run = run_in("late");
     for (size_t i = 0; i < run.table.n; i++)
         assert_int_equal(run.table.row[i].outcome, i < 3 ? OUTCOME_ERROR : OUTCOME_OK);
@@ -89,16 +80,15 @@ TEST(where_the_first_designs_fail_the_first_that_succeeds_says_how_many)
 
 TEST(threads_and_kills_change_no_byte_of_a_search_with_words_numbers_and_constraints)
 {
-    static const size_t KILLED_AT[] = {1, 9, 17, 40, 66};
     write_bounded("bytes.ini", "bounded", "");
     free(output_of("optimize @/bytes.ini --out @/whole"));
     free(output_of("optimize @/bytes.ini --out @/three --threads 3"));
     FREED char *whole = all_of("whole"), *three = all_of("three");
     assert_string_equal(whole, three);
-    for (size_t i = 0; i < N_OF(KILLED_AT); i++) {
+    FOR_EACH (size_t, killed_at, 1, 9, 17, 40, 66) {
         const pid_t pid = start("bytes.ini", "killed");
         const double until = now_s() + 60;
-        while (finished_in("killed") < KILLED_AT[i] && now_s() < until)
+        while (finished_in("killed") < *killed_at && now_s() < until)
             rest(0.005);
         kill(pid, SIGKILL);
         wait_end(pid);

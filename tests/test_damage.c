@@ -30,12 +30,12 @@ static void killed_run(const char *out)
 /* The lock's holder seems to be gone, so that the folder seems free; when it lets go there is a run. */
 TEST(a_run_that_appears_while_the_lock_is_waited_for_is_not_overwritten)
 {
-    char path[PATH_MAX], host[65] = "", text[96];
+    char path[PATH_MAX], host[65] = "";
     Folder folder;
     gethostname(host, sizeof host - 1);
     shell_in_place("mkdir race");
     CHECK_OK(folder_take(&folder, path_of("race", path), 0, &err), &err);
-    snprintf(text, sizeof text, "%d %s\n", 0x3fffff, host);
+    FREED char *text = formatted("%d %s\n", 0x3fffff, host);
     assert_int_equal(pwrite(folder.lock, text, strlen(text), 0), strlen(text));
     const pid_t pid = fork();
     if (pid == 0) {
@@ -91,14 +91,13 @@ TEST(the_journal_of_another_run_stays_out_of_a_new_database)
 
 TEST(a_database_that_is_removed_in_flight_is_put_back)
 {
-    static const char *const FILES[] = {"run.sqlite", "run.sqlite-wal", "run.sqlite*"};
-    for (size_t i = 0; i < sizeof FILES / sizeof FILES[0]; i++) {
+    FOR_EACH (const char *, file, "run.sqlite", "run.sqlite-wal", "run.sqlite*") {
         const pid_t pid = start_and_wait("flight");
-        shell_in_place("rm flight/%s", FILES[i]);
+        shell_in_place("rm flight/%s", *file);
         const int status = wait_end(pid);
         FREED char *said = read_in_place("said");
         if (!WIFEXITED(status) || WEXITSTATUS(status) != 74 || !strstr(said, "the same command resumes the run"))
-            fail_msg("%s: %x: %s", FILES[i], status, said);
+            fail_msg("%s: %x: %s", *file, status, said);
         free(output_of("optimize @/flight"));
         assert_same_run("slow", "flight");
         shell_in_place("rm -r flight");
@@ -146,8 +145,7 @@ TEST(a_bit_in_the_text_of_a_table_is_found)
     char path[PATH_MAX], bytes[8192];
     static const char WORDS[] = "PRIMARY KEY, entered";
     shell_in_place("cp -r sound bit");
-    FILE *f = fopen(path_of("bit/run.sqlite", path), "r+b");
-    assert_non_null(f);
+    FILE *f = opened(path_of("bit/run.sqlite", path), "r+b");
     const size_t n = fread(bytes, 1, sizeof bytes, f);
     const char *at = memmem(bytes, n, WORDS, strlen(WORDS));
     assert_non_null(at);
@@ -160,8 +158,7 @@ TEST(a_bit_in_the_text_of_a_table_is_found)
 
 TEST(a_damaged_run_says_what_its_tables_still_know_and_another_begins_with_it)
 {
-    char advice[PATH_MAX];
-    snprintf(advice, sizeof advice, "; --new --set search.start=%s/hurt/front.csv begins another run", place.folder);
+    FREED char *advice = formatted("; --new --set search.start=%s/hurt/front.csv begins another run", place.folder);
     shell_in_place("cp -r sound hurt");
     change_database("hurt/run.sqlite", "UPDATE evaluation SET f1 = 0 WHERE id = 2");
     expect(74, advice, "status @/hurt");

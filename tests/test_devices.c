@@ -1,7 +1,5 @@
 /* Devices of a design: links and the tuned mass against the baselines, and engines against each other where
  * floors and core collide as well. */
-
-#include "check.h"
 #include "scene_options.h"
 #include "sim/device.h"
 
@@ -9,17 +7,13 @@ enum { FLOORS = 20, LINKS_AT = FLOORS + 2, MASS_AT = LINKS_AT + FLOORS, FEW = 6 
 
 typedef struct {
     Settings settings;
-    Motion motion;
-    Scene *scene;
-    SimWorker *worker;
     double x[MASS_AT + 3 + FLOORS];
 } Tower;
 
 /* The paper's tower under a motion of the program, with a link on every floor and a tuned mass. */
 static void tower_set(Tower *t, const char *variables, Engine engine, double gap)
 {
-    *t = (Tower){0};
-    paper_defaults(&t->settings);
+    *t = (Tower){.settings = paper_settings()};
     t->settings.sim.duration_s = 15;
     t->settings.sim.accuracy = ACCURACY_FINE;
     t->settings.sim.forces = FORCES_YES;
@@ -36,18 +30,12 @@ static SimResult tower_run(Tower *t, SceneKind kind, LinearDevice device)
 {
     SimResult r;
     const SceneOptions options = settings_scene(&t->settings);
-    CHECK_OK(motion_load(&t->motion, t->settings.motion.record, UNIT_FROM_FILE, &err), &err);
-    CHECK_OK(motion_prepare(&t->motion, 0.3, t->settings.motion.record[0] == 'b' ? 1 : 3, &err), &err);
-    CHECK_OK(scene_create(&t->scene, &options, &t->motion, &err), &err);
-    CHECK_OK(sim_worker_create(&t->worker, t->scene, &err), &err);
-    sim_worker_device(t->worker, &device);
-    CHECK_OK(sim_run(t->worker, kind, t->x, &r, &err), &err);
-    if (r.outcome != RUN_OK)
-        print_error("%s\n", r.reason);
-    assert_int_equal(r.outcome, RUN_OK);
-    sim_worker_free(t->worker);
-    scene_free(t->scene);
-    motion_free(&t->motion);
+    const char *record = t->settings.motion.record;
+    OWNED(motion_free) Motion motion = motion_of(record, 0.3, record[0] == 'b' ? 1 : 3);
+    OWNED(one_scene_free) OneScene stage = one_scene_of(&options, &motion);
+    sim_worker_device(stage.worker, &device);
+    CHECK_OK(sim_run(stage.worker, kind, t->x, &r, &err), &err);
+    assert_ran(&r);
     return r;
 }
 
@@ -69,12 +57,9 @@ static const LinearDevice NONE;
 /* Energies in joules: of the tuned mass alone the input of the core is not part. */
 static void assert_alike(const SimResult *r, const SimResult *wanted, double tolerance)
 {
-    assert_close(r->j1_m, wanted->j1_m, tolerance);
-    assert_close(r->j2_m, wanted->j2_m, tolerance);
-    assert_close(r->j3_g, wanted->j3_g, tolerance);
+    assert_close_in(*r, *wanted, tolerance, j1_m, j2_m, j3_g);
     assert_close(r->ed1_pct * r->input_energy_j, wanted->ed1_pct * wanted->input_energy_j, tolerance);
-    assert_close(r->damped_building_j, wanted->damped_building_j, tolerance);
-    assert_close(r->stroke_m, wanted->stroke_m, tolerance);
+    assert_close_in(*r, *wanted, tolerance, damped_building_j, stroke_m);
     assert_less(r->energy_balance_error, 1e-5);
 }
 
@@ -87,10 +72,7 @@ TEST(links_of_a_design_alone_are_the_baseline_of_links)
     fit_links(&t, 0.865e6);
     const SimResult fine = tower_run(&t, SCENE_IMPACT, NONE);
     assert_alike(&fine, &exact, 1e-6);
-    assert_close(fine.dashpot_n, exact.dashpot_n, 1e-6);
-    assert_close(fine.input_energy_j, exact.input_energy_j, 1e-6);
-    assert_close(fine.device_loss_j, exact.device_loss_j, 1e-6);
-    assert_close(fine.forces.base_shear_n, exact.forces.base_shear_n, 1e-6);
+    assert_close_in(fine, exact, 1e-6, dashpot_n, input_energy_j, device_loss_j, forces.base_shear_n);
     assert_less(50, fine.ed_devices_pct);
     t.settings.sim.accuracy = ACCURACY_STANDARD;
     const SimResult r = tower_run(&t, SCENE_IMPACT, NONE);
@@ -189,10 +171,7 @@ TEST(links_have_the_reference_numbers)
     Tower t;
     tower_set(&t, "gaps, thickness, links", ENGINE_FAST, 1);
     snprintf(t.settings.motion.record, OPTION_TEXT_MAX, "../shared/records/northridge_sylmar_ns.csv");
-    if (access(t.settings.motion.record, R_OK) != 0) {
-        print_message("skipped: %s is not there\n", t.settings.motion.record);
-        skip();
-    }
+    need_file(t.settings.motion.record);
     t.settings.sim.duration_s = 11;
     fit_links(&t, 0.865e6);
     const SimResult r = tower_run(&t, SCENE_IMPACT, NONE);
@@ -307,7 +286,6 @@ TEST(devices_are_refused_by_name)
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         DesignOptions o = scene_defaults().design;
         DesignSpace s;
-        err = (Err){0};
         snprintf(o.variables, sizeof o.variables, "%s", bad[i].variables);
         snprintf(o.devices, sizeof o.devices, "%s", bad[i].devices);
         assert_refused(design_space_make(&s, &o, CORE_BOX, FLOORS, &err), STATUS_BAD_DATA, bad[i].why);

@@ -14,7 +14,6 @@ static const char STEADY[] = "[problem]\nkind = external\ncommand = sh tests/wor
 
 TEST(a_second_process_is_refused_with_the_first_ones_number)
 {
-    char wanted[64];
     LockHolder holder;
     char path[PATH_MAX];
     write_in_place("steady.ini", STEADY);
@@ -23,10 +22,8 @@ TEST(a_second_process_is_refused_with_the_first_ones_number)
         rest(0.02);
     while (access(path_of("locked/run.sqlite", path), F_OK) != 0)
         rest(0.02);
-    snprintf(wanted, sizeof wanted, "is in use by process %ld on ", (long)pid);
-    expect(74, wanted, "optimize @/steady.ini --out @/locked");
-    FREED char *said = output_of("status @/locked");
-    assert_non_null(strstr(said, "running (process"));
+    expect(74, brief("is in use by process %ld on ", (long)pid), "optimize @/steady.ini --out @/locked");
+    expect_output("running (process", "status @/locked");
     kill(pid, SIGKILL);
     wait_end(pid);
     assert_false(folder_is_held(path_of("locked", path), &holder));
@@ -49,8 +46,6 @@ static void assert_nothing_lost(const char *folder, const Run *before)
 TEST(a_run_that_can_write_no_more_says_so_and_goes_on_later)
 {
     Said s;
-    Run before;
-    char path[PATH_MAX];
     write_in_place("textbook.ini", TEXTBOOK);
     free(output_of("optimize @/textbook.ini --out @/unlimited"));
     int refused = 0;
@@ -67,12 +62,11 @@ TEST(a_run_that_can_write_no_more_says_so_and_goes_on_later)
         if (s.code != 74 || !strstr(s.err, "/small/"))
             fail_msg("%d blocks: exit %d: %s", blocks, s.code, s.err);
         forget(&s);
-        memset(&before, 0, sizeof before);
-        if (access(path_of("small/run.sqlite", path), F_OK) == 0)
+        OWNED(run_free) Run before = {0};
+        if (access(there("small/run.sqlite"), F_OK) == 0)
             before = run_in("small");
         free(output_of("optimize @/textbook.ini --out @/small"));
         assert_nothing_lost("small", &before);
-        run_free(&before);
         assert_same_run("unlimited", "small");
     }
     assert_at_most(2, refused);
@@ -81,7 +75,7 @@ TEST(a_run_that_can_write_no_more_says_so_and_goes_on_later)
 /* A disk of 300 kB, where this user may mount one. */
 TEST(a_full_disk_is_named_and_what_was_stored_stays_readable)
 {
-    char disk[PATH_MAX], run_of_disk[PATH_MAX];
+    char disk[PATH_MAX];
     OWNED(forget) Said s;
     OWNED(run_free) Run saved;
     assert_int_equal(mkdir(path_of("disk", disk), 0777), 0);
@@ -90,7 +84,7 @@ TEST(a_full_disk_is_named_and_what_was_stored_stays_readable)
     run(&s, "optimize @/textbook.ini --max-evals 400 --out @/disk/run");
     const int right = s.code == 74 && strstr(s.err, "/disk/run/") &&
                       (strstr(s.err, "the disk is full") || strstr(s.err, "No space left"));
-    const Status readable = run_read(&saved, path_of("disk/run", run_of_disk), &err);
+    const Status readable = run_read(&saved, there("disk/run"), &err);
     const size_t n = saved.table.n;
     umount2(disk, MNT_DETACH);
     if (!right)
@@ -104,14 +98,13 @@ TEST(a_run_on_a_disk_that_was_full_goes_on_at_once)
 {
     static const char OFF[] = "[problem]\nkind = external\ncommand = sh tests/worker.sh good\nvariables = 3\n"
                               "objectives = 2\n[search]\npopulation = 6\ninitial = 16\nmax_evals = 90\nthreads = 1\n";
-    char disk[PATH_MAX], size[32];
+    char disk[PATH_MAX];
     Said s;
     write_in_place("off.ini", OFF);
     free(output_of("optimize @/off.ini --out @/roomy"));
     assert_int_equal(mkdir(path_of("tight", disk), 0777), 0);
     for (int kb = 110; kb < 270; kb += SANITIZED ? 40 : 20) {
-        snprintf(size, sizeof size, "size=%dk", kb);
-        if (mount("none", disk, "tmpfs", 0, size) != 0)
+        if (mount("none", disk, "tmpfs", 0, brief("size=%dk", kb)) != 0)
             skip();
         run(&s, "optimize @/off.ini --out @/tight/run");
         const int code = s.code;
@@ -130,7 +123,7 @@ TEST(a_run_on_a_disk_that_was_full_goes_on_at_once)
 
 TEST(a_folder_that_is_read_only_is_named)
 {
-    char folder[PATH_MAX], run_there[PATH_MAX];
+    char folder[PATH_MAX];
     OWNED(run_free) Run saved;
     assert_int_equal(mkdir(path_of("fixed", folder), 0777), 0);
     if (mount(folder, folder, NULL, MS_BIND, NULL) != 0)
@@ -140,7 +133,7 @@ TEST(a_folder_that_is_read_only_is_named)
     OWNED(forget) Said new_run, old_run;
     run(&new_run, "optimize @/textbook.ini --out @/fixed/other");
     run(&old_run, "optimize @/fixed/run --max-evals 30");
-    const Status readable = run_read(&saved, path_of("fixed/run", run_there), &err);
+    const Status readable = run_read(&saved, there("fixed/run"), &err);
     const size_t n = saved.table.n;
     umount2(folder, MNT_DETACH);
     CHECK_OK(readable, &err);
@@ -151,10 +144,9 @@ TEST(a_folder_that_is_read_only_is_named)
 
 static size_t simulated_in(const char *name)
 {
-    char path[PATH_MAX];
     OWNED(run_free) Run saved;
     err = (Err){0};
-    const Status status = run_read(&saved, path_of(name, path), &err);
+    const Status status = run_read(&saved, there(name), &err);
     const size_t n = saved.table.n;
     if (status != STATUS_OK)
         print_error("%s\n", err.text);
@@ -164,12 +156,12 @@ static size_t simulated_in(const char *name)
 /* Killed, then put where nothing can be written, with and without what SQLite shares between processes (-shm). */
 TEST(a_killed_run_in_a_read_only_folder_is_read_with_its_journal)
 {
-    char folder[PATH_MAX], path[PATH_MAX];
+    char folder[PATH_MAX];
     struct stat journal;
     const pid_t pid = start("steady.ini", "killed");
     do {
         rest(0.05);
-    } while (stat(path_of("killed/run.sqlite-wal", path), &journal) != 0 || journal.st_size < 80000);
+    } while (stat(there("killed/run.sqlite-wal"), &journal) != 0 || journal.st_size < 80000);
     kill(pid, SIGKILL);
     wait_end(pid);
     assert_int_equal(mkdir(path_of("archive", folder), 0777), 0);
@@ -189,9 +181,8 @@ TEST(a_killed_run_in_a_read_only_folder_is_read_with_its_journal)
 TEST(a_database_that_somebody_keeps_locked_is_busy)
 {
     sqlite3 *other;
-    char path[PATH_MAX];
     free(output_of("optimize @/textbook.ini --max-evals 20 --out @/busy"));
-    assert_int_equal(sqlite3_open(path_of("busy/run.sqlite", path), &other), SQLITE_OK);
+    assert_int_equal(sqlite3_open(there("busy/run.sqlite"), &other), SQLITE_OK);
     assert_int_equal(sqlite3_exec(other, "BEGIN IMMEDIATE", NULL, NULL, NULL), SQLITE_OK);
     expect(74, "busy/run.sqlite: is busy", "optimize @/busy --max-evals 30");
     free(output_of("export @/busy --csv @/while-busy.csv"));
@@ -201,9 +192,7 @@ TEST(a_database_that_somebody_keeps_locked_is_busy)
 
 static void overwrite(const char *name, long offset, const char *bytes, size_t n)
 {
-    char path[PATH_MAX];
-    FILE *f = fopen(path_of(name, path), "r+b");
-    assert_non_null(f);
+    FILE *f = opened(there(name), "r+b");
     assert_int_equal(fseek(f, offset, SEEK_SET), 0);
     assert_int_equal(fwrite(bytes, 1, n, f), n);
     assert_int_equal(fclose(f), 0);
@@ -251,25 +240,23 @@ static long peak_kib(void)
 /* Somebody's file that would compute rows without end or of a gigabyte is refused, and costs no memory. */
 TEST(a_database_runs_nothing_and_needs_no_more_memory_than_its_size)
 {
-    static const char *const CHANGES[] = {
+    free(output_of("optimize @/textbook.ini --max-evals 30 --out @/own"));
+    free(output_of("status @/own"));
+    const long usual = peak_kib();
+    FOR_EACH (
+        const char *, change,
         "ALTER TABLE evaluation RENAME TO was; CREATE VIEW evaluation AS WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL "
         "SELECT i + 1 FROM n) SELECT i AS id, 0 AS generation, 'sampled' AS kind, 'ok' AS outcome, '' AS reason, 0.1 "
-        "AS "
-        "seconds, 0 AS violation, 0 AS digest, was.x1 FROM n, was WHERE was.id = 1",
+        "AS seconds, 0 AS violation, 0 AS digest, was.x1 FROM n, was WHERE was.id = 1",
         "ALTER TABLE state RENAME TO was; CREATE VIEW state AS SELECT 1 AS id, 0 AS generation, zeroblob(900000000) AS "
         "bytes",
         "CREATE TRIGGER more AFTER INSERT ON session BEGIN DELETE FROM evaluation; END",
         "CREATE VIRTUAL TABLE words USING fts5(a)",
         /* a column that is computed: a row of a gigabyte in a small file */
         "ALTER TABLE state RENAME TO was; CREATE TABLE state(id INTEGER, generation INTEGER, bytes AS "
-        "(zeroblob(900000000))); INSERT INTO state VALUES (1, 0)",
-    };
-    free(output_of("optimize @/textbook.ini --max-evals 30 --out @/own"));
-    free(output_of("status @/own"));
-    const long usual = peak_kib();
-    for (size_t i = 0; i < sizeof CHANGES / sizeof CHANGES[0]; i++) {
+        "(zeroblob(900000000))); INSERT INTO state VALUES (1, 0)") {
         shell_in_place("rm -rf sent; cp -r own sent");
-        change_database("sent/run.sqlite", CHANGES[i]);
+        change_database("sent/run.sqlite", *change);
         expect(74, "sent/run.sqlite: ", "status @/sent");
         expect(74, "sent/run.sqlite: ", "optimize @/sent --max-evals 40");
     }

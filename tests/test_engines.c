@@ -1,7 +1,5 @@
 /* Every engine against the fast one at its finest, and against the rebound of an isolated
  * impact, each to the accuracy that its tolerance is known to give. */
-#include "check.h"
-
 #include "bench/stability/bob.h"
 
 #include "bench/engines/engines.h"
@@ -18,8 +16,7 @@ static const Promise PROMISES[] = {
     {ENGINE_FAST, 20, 1e-4, 1e-5, 3e-4},        {ENGINE_CVODE, 1e-9, 1e-5, 1e-6, 1e-6},
     {ENGINE_CVODE_BDF, 1e-5, 2e-2, 3e-3, 3e-3}, {ENGINE_ARKODE_IMEX, 1e-5, 1e-3, 3e-5, 3e-3},
     {ENGINE_ETDRK4, 1e-4, 1e-4, 1e-4, 5e-4},    {ENGINE_NEWMARK, 1e-4, 3e-4, 3e-5, 3e-4},
-    {ENGINE_RADAU, 2e-4, 3e-4, 1e-5, 1e-5},
-};
+    {ENGINE_RADAU, 2e-4, 3e-4, 1e-5, 1e-5}};
 enum { N_PROMISES = sizeof PROMISES / sizeof PROMISES[0] };
 
 static SimResult run(const Promise *p, const SimModel *model, const Motion *m, double duration)
@@ -27,9 +24,7 @@ static SimResult run(const Promise *p, const SimModel *model, const Motion *m, d
     SimResult r;
     const EngineOptions options = {.duration = duration, .accuracy = ACCURACY_FINE, .tolerance = p->tolerance};
     CHECK_OK(bench_engine(p->engine)->run(model, m, &options, &r, &err), &err);
-    if (r.outcome != RUN_OK)
-        print_error("%s: %s\n", bench_engine(p->engine)->name, r.reason);
-    assert_int_equal(r.outcome, RUN_OK);
+    assert_ran(&r);
     return r;
 }
 

@@ -1,9 +1,6 @@
 /* The estimated error of a result: twice the steps, and above the error in most windows. */
-#include "check.h"
-
 #include "bench/promise.h"
 #include "scene_options.h"
-#include "sim/sim.h"
 #include "analysis/estimate.h"
 
 TEST(a_second_run_has_twice_the_steps_of_the_first)
@@ -54,21 +51,12 @@ TEST(equal_results_have_no_error_and_failed_ones_an_unknown_one)
 
 static void open_tower(Problem *p, long replicates, double gap_tolerance_m)
 {
-    Settings s;
-    paper_defaults(&s);
+    Settings s = paper_settings();
     snprintf(s.motion.record, OPTION_TEXT_MAX, "builtin:sylmar-like");
     s.sim.duration_s = 12;
     s.sim.replicates = replicates;
     s.sim.gap_tolerance_m = gap_tolerance_m;
     CHECK_OK(tower_open(p, &s, TOWER_AS_SET, SIZE_MAX, &(Err){0}), &(Err){0});
-}
-
-static void fill_gaps(double x[22], double from, double step)
-{
-    for (int j = 0; j < 20; j++)
-        x[j] = from + step * j;
-    x[20] = 0.012;
-    x[21] = 0.0064;
 }
 
 /* The other way: replicates, whose gaps scatter normally. */
@@ -78,7 +66,7 @@ TEST(the_spread_of_gaps_that_are_one_micrometre_off_is_that_of_replicates_as_bui
     double x[22], error[N_MEASURES], sd[N_MEASURES];
     SimResult result, shown;
     ReplicateSummary r;
-    fill_gaps(x, 0.004, 0.002);
+    paper_design(x, 0.004, 0.002);
     open_tower(&single, 1, 0);
     open_tower(&scattered, 24, ESTIMATE_GAP_M);
     const SimTask task = {.x = x};
@@ -97,7 +85,7 @@ TEST(gaps_that_never_close_have_no_spread_and_a_building_without_gaps_an_unknown
     OWNED(problem_close) Problem p;
     double x[22], error[2 * N_MEASURES], sd[2 * N_MEASURES];
     SimResult result[2];
-    fill_gaps(x, 5, 0);
+    paper_design(x, 5, 0);
     open_tower(&p, 1, 0);
     const SimTask tasks[] = {{.x = x}, {.kind = SCENE_NO_CORE}};
     CHECK_OK(tower_simulate(&p, 2, tasks, result, &err), &err);
@@ -109,27 +97,17 @@ TEST(gaps_that_never_close_have_no_spread_and_a_building_without_gaps_an_unknown
 static SimResult run_window(const SceneOptions *o, const PromiseCase *c)
 {
     SceneOptions s = *o;
-    Scene *scene;
-    SimWorker *worker;
-    SimResult r;
     s.sim.duration_s = c->duration;
     s.core.theory = c->theory;
-    CHECK_OK(scene_create(&scene, &s, &c->motion, &err), &err);
-    CHECK_OK(sim_worker_create(&worker, scene, &err), &err);
-    CHECK_OK(sim_run(worker, SCENE_IMPACT, c->x, &r, &err), &err);
-    sim_worker_free(worker);
-    scene_free(scene);
-    return r;
+    return run_once(&s, &c->motion, SCENE_IMPACT, c->x);
 }
 
 TEST(the_error_is_below_its_estimate_in_nine_of_ten_results)
 {
     static const int RESULTS[] = {MEASURE_J1, MEASURE_J2, MEASURE_J3, MEASURE_ED1, MEASURE_ED5_10, MEASURE_EDCS};
     SceneOptions o = paper_scene(), twice = o, fine = o;
-    OWNED(motion_free) Motion m;
     int below = 0, all = 0;
-    CHECK_OK(motion_load(&m, "builtin:kobe-like", UNIT_FROM_FILE, &err), &err);
-    CHECK_OK(motion_prepare(&m, 0.3, 3.1, &err), &err);
+    OWNED(motion_free) Motion m = motion_of("builtin:kobe-like", 0.3, 3.1);
     assert_true(estimate_options(&o.sim, &twice.sim));
     fine.sim.accuracy = ACCURACY_FINE;
     const PromisePlan plan = {.options = &o, .records = &m, .n_records = 1, .n_scenes = 16};

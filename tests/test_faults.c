@@ -28,8 +28,7 @@ static const Deed DEEDS[] = {
     {"report @/done --out @/run --record builtin:sylmar-like", "run"},
     {"report @/done --pictures @/run --record builtin:sylmar-like", "run/gaps.svg"},
     {"status @/done", NULL},
-    {STUDY("@/run"), "run/front.csv"},
-};
+    {STUDY("@/run"), "run/front.csv"}};
 enum { N_DEEDS = sizeof DEEDS / sizeof DEEDS[0] };
 
 static void remove_run(void)
@@ -81,18 +80,11 @@ static long steps_between(long n)
 
 /* ---- memory ---------------------------------------------------------------------------------------------------- */
 
-static void preload(char path[PATH_MAX])
-{
-    const ssize_t n = readlink("/proc/self/exe", path, PATH_MAX - 32);
-    assert_less(0, n);
-    path[n] = 0;
-    strcpy(strrchr(path, '/'), "/fault/nomem.so");
-}
-
 static void refuse_memory(long k)
 {
-    char shim[PATH_MAX];
-    preload(shim);
+    char shim[PATH_MAX] = "";
+    assert_less(0, readlink("/proc/self/exe", shim, PATH_MAX - 32));
+    strcpy(strrchr(shim, '/'), "/fault/nomem.so");
     snprintf(place.under, sizeof place.under, "env LD_PRELOAD='%.120s' NOMEM_AT=%ld NOMEM_COUNT='%s/count' ", shim, k,
              place.folder);
 }
@@ -100,8 +92,7 @@ static void refuse_memory(long k)
 static long count_requests(void)
 {
     FREED char *text = read_in_place("count");
-    const long n = strtol(text, NULL, 10);
-    return n;
+    return strtol(text, NULL, 10);
 }
 
 static void sweep_memory(const Deed *deed)
@@ -140,8 +131,7 @@ TEST(too_little_address_space_or_stack_is_said_at_once)
         const char *limit, *command, *words;
     } CASES[] = {
         {"ulimit -v 300000; timeout 60", "building configs/quick.ini", "address space is limited to 292 MiB"},
-        {"ulimit -s 64; timeout 60", "optimize @/textbook.ini --out @/narrow", "the stack is limited to 64 kB"},
-    };
+        {"ulimit -s 64; timeout 60", "optimize @/textbook.ini --out @/narrow", "the stack is limited to 64 kB"}};
     write_in_place("textbook.ini", TEXTBOOK);
     for (size_t i = 0; i < sizeof CASES / sizeof CASES[0]; i++) {
         snprintf(place.under, sizeof place.under, "%s", CASES[i].limit);
@@ -168,13 +158,7 @@ typedef struct {
 static const Refusal REFUSALS[] = {
     {"write", "ENOSPC", {"write", 74, 74}},      {"pwrite64", "ENOSPC", {"pwrite64", 74, 74}},
     {"ftruncate", "EIO", {"ftruncate", 74, 74}}, {"fsync", "EIO", {"fsync", 74, 74}},
-    {"fdatasync", "EIO", {"fdatasync", 74, 74}}, {"rename", "EACCES", {"rename", 74, 74}},
-};
-
-static int can_trace(void)
-{
-    return system("strace -f -o /dev/null true >/dev/null 2>&1") == 0;
-}
+    {"fdatasync", "EIO", {"fdatasync", 74, 74}}, {"rename", "EACCES", {"rename", 74, 74}}};
 
 static long count_calls(const Refusal *r, const char *command)
 {
@@ -185,10 +169,7 @@ static long count_calls(const Refusal *r, const char *command)
     place.under[0] = 0;
     assert_int_equal(said.code, 0);
     FREED char *calls = read_in_place("calls");
-    long n = 0;
-    for (const char *at = calls; (at = strchr(at, '\n')); at++)
-        n++;
-    return n;
+    return count(calls, "\n");
 }
 
 static void refuse_call(const Refusal *r, long k)
@@ -230,7 +211,7 @@ static void sweep_writes(const Deed *deed, const Refusal *r)
 TEST(a_write_that_fails_is_told_and_the_run_goes_on_to_the_same_front)
 {
     static const Deed EXPORT = {"export @/done --csv @/run", "run"}, STUDY = {STUDY("@/run"), "run/front.csv"};
-    if (!can_trace())
+    if (system("strace -f -o /dev/null true >/dev/null 2>&1") != 0)
         skip();
     for (size_t i = 0; i < sizeof REFUSALS / sizeof REFUSALS[0]; i++) {
         sweep_writes(&EXPORT, &REFUSALS[i]);
@@ -244,8 +225,7 @@ static int make_run(void **state)
         return -1;
     OWNED(forget) Said said;
     run(&said, STUDY("@/done"));
-    const int code = said.code;
-    return code;
+    return said.code;
 }
 
 SUITE(make_run, clear_place)

@@ -20,7 +20,8 @@ static void check_harmonic(FilterKind kind, double hz, double cutoff, double dt)
     Filter f;
     CHECK_OK(filter_butterworth(&f, kind, cutoff, dt, &err), &err);
     const size_t half = (size_t)(200 / fmin(hz, cutoff) / dt), n = 2 * half + 1, all = n + filter_padding(&f);
-    double *x = calloc(all, sizeof *x), odd = 0;
+    FREED double *x = calloc(all, sizeof *x);
+    double odd = 0;
     for (size_t i = 0; i < n; i++) {
         const double t = ((double)i - (double)half) * dt, s = (double)i / (double)(n - 1) - 0.5;
         x[i] = cos(2 * M_PI * hz * t) * exp(-100 * s * s);
@@ -31,16 +32,14 @@ static void check_harmonic(FilterKind kind, double hz, double cutoff, double dt)
         odd = fmax(odd, fabs(x[half + i] - x[half - i]));
     assert_less(fabs(x[half] - wanted), 5e-4);
     assert_less(odd, 1e-6);
-    free(x);
 }
 
 TEST(gain_is_that_of_two_passes_of_fourth_order_and_the_phase_is_zero)
 {
-    static const double RATIOS[] = {0.25, 0.5, 0.8, 1, 1.25, 2, 4};
     for (int kind = FILTER_LOW_PASS; kind <= FILTER_HIGH_PASS; kind++)
-        for (size_t i = 0; i < sizeof RATIOS / sizeof RATIOS[0]; i++) {
-            check_harmonic(kind, 10 * RATIOS[i], 10, 0.002);
-            check_harmonic(kind, 0.1 * RATIOS[i], 0.1, 0.01);
+        FOR_EACH (double, ratio, 0.25, 0.5, 0.8, 1, 1.25, 2, 4) {
+            check_harmonic(kind, 10 * *ratio, 10, 0.002);
+            check_harmonic(kind, 0.1 * *ratio, 0.1, 0.01);
         }
 }
 
@@ -109,11 +108,9 @@ TEST(signals_side_by_side_are_filtered_as_each_alone)
 
 TEST(a_cutoff_beyond_half_the_sampling_rate_is_refused)
 {
-    static const double BAD[] = {0, -1, 50, 80, NAN, INFINITY};
     Filter f;
-    for (size_t i = 0; i < sizeof BAD / sizeof BAD[0]; i++) {
-        assert_refused(filter_butterworth(&f, FILTER_LOW_PASS, BAD[i], 0.01, &err), STATUS_BAD_DATA, "50 Hz");
-    }
+    FOR_EACH (double, bad, 0, -1, 50, 80, NAN, INFINITY)
+        assert_refused(filter_butterworth(&f, FILTER_LOW_PASS, *bad, 0.01, &err), STATUS_BAD_DATA, "50 Hz");
 }
 
 SUITE(NULL, NULL)

@@ -1,6 +1,4 @@
 /* Core modes that the engine leaves out act as springs: results hardly depend on how many are left out. */
-#include "check.h"
-
 #include "bench/promise.h"
 #include "scene_options.h"
 #include "sim/fast/fast.h"
@@ -52,10 +50,8 @@ TEST(few_core_modes_and_springs_give_what_all_modes_give)
     static const double ALLOWED[RESULTS] = {3e-5, 2e-4, 1e-3}; /* without the springs 1e-4, 1e-3, 2e-3 */
     const SceneOptions o = paper_scene();
     double error[RESULTS][WINDOWS];
-    OWNED(motion_free) Motion m;
     OWNED(stage_close) Stage t;
-    CHECK_OK(motion_load(&m, "builtin:kobe-like", UNIT_FROM_FILE, &err), &err);
-    CHECK_OK(motion_prepare(&m, 0.3, 3.1, &err), &err);
+    OWNED(motion_free) Motion m = motion_of("builtin:kobe-like", 0.3, 3.1);
     const PromisePlan plan = {.options = &o, .records = &m, .n_records = 1, .n_scenes = WINDOWS};
     stage_open(&t, &o);
     for (int k = 0; k < WINDOWS; k++) {
@@ -81,11 +77,9 @@ TEST(few_core_modes_and_springs_give_what_all_modes_give)
 TEST(so_many_core_modes_are_kept_as_are_asked_for)
 {
     const SceneOptions o = paper_scene();
-    OWNED(motion_free) Motion m;
     OWNED(stage_close) Stage t;
     PromiseCase c;
-    CHECK_OK(motion_load(&m, "builtin:kobe-like", UNIT_FROM_FILE, &err), &err);
-    CHECK_OK(motion_prepare(&m, 0.3, 3.1, &err), &err);
+    OWNED(motion_free) Motion m = motion_of("builtin:kobe-like", 0.3, 3.1);
     const PromisePlan plan = {.options = &o, .records = &m, .n_records = 1, .n_scenes = 1};
     CHECK_OK(promise_case(&plan, 20, GAPS_LOG_UNIFORM, 0, &c, &err), &err);
     stage_open(&t, &o);

@@ -1,13 +1,10 @@
 /* Forces of a response (sim/force_monitor.h) against beam formulas, closed forms of an impact, conservation of momentum,
  * and the engine cvode. */
-#include "check.h"
 #include "scene_options.h"
 
 #include "bench/stability/bob.h"
 #include "evaluate/measures.h"
-#include "sim/engine.h"
 #include "sim/fast/fast.h"
-#include "sim/sim.h"
 
 enum { N = 20 };
 
@@ -18,8 +15,7 @@ typedef struct {
     Building building;
     CoreBeam core;
     ForceMonitor *monitor;
-    double x[N + 2];
-    double height;
+    double x[N + 2], height;
 } Frame;
 
 static void frame_open(Frame *f, CoreSection section, double t_base, double t_top)
@@ -294,26 +290,20 @@ TEST(impulses_add_up_to_the_change_of_momentum)
 
 /* ---- the tower ----------------------------------------------------------------------------------------------- */
 
+static void irregular_design(double x[N + 2])
+{
+    for (int j = 0; j < N + 2; j++)
+        x[j] = j < N ? 0.004 * (j + 1) + 0.002 * (j % 3) : j == N ? 0.012 : 0.0064;
+}
+
 static SimResult tower_run_of(const SimOptions *sim, SceneKind kind)
 {
-    OWNED(motion_free) Motion motion;
-    Scene *scene;
-    SimWorker *worker;
-    SimResult r;
     SceneOptions options = paper_scene();
     options.sim = *sim;
     double x[N + 2];
-    for (int j = 0; j < N; j++)
-        x[j] = 0.004 * (j + 1) + 0.002 * (j % 3);
-    x[N] = 0.012;
-    x[N + 1] = 0.0064;
-    CHECK_OK(motion_load(&motion, "builtin:elcentro-like", UNIT_FROM_FILE, &err), &err);
-    CHECK_OK(motion_prepare(&motion, 0.3, 3, &err), &err);
-    CHECK_OK(scene_create(&scene, &options, &motion, &err), &err);
-    CHECK_OK(sim_worker_create(&worker, scene, &err), &err);
-    CHECK_OK(sim_run(worker, kind, x, &r, &err), &err);
-    sim_worker_free(worker);
-    scene_free(scene);
+    irregular_design(x);
+    OWNED(motion_free) Motion motion = motion_of("builtin:elcentro-like", 0.3, 3);
+    SimResult r = run_once(&options, &motion, kind, x);
     r.seconds = 0;
     return r;
 }
@@ -340,14 +330,8 @@ static SimForces tower_forces(int measures_only)
 static void same_forces(const SimForces *a, const SimForces *b, double tolerance)
 {
     double impulse[2] = {0};
-    assert_close(a->base_shear_n, b->base_shear_n, tolerance);
-    assert_close(a->overturning_nm, b->overturning_nm, tolerance);
-    assert_close(a->core_base_shear_n, b->core_base_shear_n, tolerance);
-    assert_close(a->core_overturning_nm, b->core_overturning_nm, tolerance);
-    assert_close(a->core_stress_pa, b->core_stress_pa, tolerance);
-    assert_close(a->core_top_m, b->core_top_m, tolerance);
-    assert_close(a->contact_force_max_n, b->contact_force_max_n, tolerance);
-    assert_close(a->building_base_shear_n, b->building_base_shear_n, tolerance);
+    assert_close_in(*a, *b, tolerance, base_shear_n, overturning_nm, core_base_shear_n, core_overturning_nm,
+                    core_stress_pa, core_top_m, contact_force_max_n, building_base_shear_n);
     for (int s = 0; s < N; s++) {
         assert_close(a->core_shear_n[s], b->core_shear_n[s], 2 * tolerance);
         assert_close(a->core_moment_nm[s], b->core_moment_nm[s], 2 * tolerance);
@@ -410,9 +394,6 @@ static int by_size(const void *a, const void *b)
 /* What lies between the points of a run and what it leaves out, at standard accuracy. */
 TEST(peaks_are_those_of_points_every_quarter_of_a_millisecond)
 {
-    OWNED(motion_free) Motion motion;
-    Scene *scene;
-    SimWorker *worker;
     SimResult r;
     SimForces dense;
     double x[N + 2], apart[4 * N];
@@ -421,15 +402,12 @@ TEST(peaks_are_those_of_points_every_quarter_of_a_millisecond)
     frame_open(&f, CORE_BOX, 0.012, 0.0064);
     f.options.sim.forces = FORCES_YES;
     f.options.sim.duration_s = 40;
-    for (int j = 0; j < N + 2; j++)
-        x[j] = j < N ? 0.004 * (j + 1) + 0.002 * (j % 3) : j == N ? 0.012 : 0.0064;
-    CHECK_OK(motion_load(&motion, "builtin:elcentro-like", UNIT_FROM_FILE, &err), &err);
-    CHECK_OK(motion_prepare(&motion, 0.3, 3, &err), &err);
-    CHECK_OK(scene_create(&scene, &f.options, &motion, &err), &err);
-    CHECK_OK(sim_worker_create(&worker, scene, &err), &err);
+    irregular_design(x);
+    OWNED(motion_free) Motion motion = motion_of("builtin:elcentro-like", 0.3, 3);
+    OWNED(one_scene_free) OneScene stage = one_scene_of(&f.options, &motion);
     AllPoints all = {.monitor = f.monitor};
-    sim_worker_sample(worker, 2.5e-4, add_all, &all);
-    CHECK_OK(sim_run(worker, SCENE_IMPACT, x, &r, &err), &err);
+    sim_worker_sample(stage.worker, 2.5e-4, add_all, &all);
+    CHECK_OK(sim_run(stage.worker, SCENE_IMPACT, x, &r, &err), &err);
     assert_true(r.impacts > 20 && (double)all.points > 0.9 * f.options.sim.duration_s / 2.5e-4);
     force_monitor_report(f.monitor, f.options.sim.duration_s, &dense);
     for (int s = 0; s < N; s++) {
@@ -445,8 +423,6 @@ TEST(peaks_are_those_of_points_every_quarter_of_a_millisecond)
     assert_close(r.forces.core_stress_pa, dense.core_stress_pa, 5e-3);
     assert_close(r.forces.overturning_nm, dense.overturning_nm, 5e-3);
     assert_close(r.forces.base_shear_n, dense.base_shear_n, 5e-2);
-    sim_worker_free(worker);
-    scene_free(scene);
 }
 
 TEST(what_measures_do_not_need_is_left_out_and_changes_none)

@@ -1,16 +1,9 @@
 /* The core on the ground (scene/foundation.h): closed forms of rigid bodies on springs, the uncondensed beam with its
  * dashpots, the reference run of the rocking core, and every command that knows of it. */
-#include "check.h"
-
 #include <lapacke.h>
 
-#include "base/linalg.h"
-#include "base/units.h"
 #include "scene/foundation.h"
 #include "scene_options.h"
-#include "settings/settings.h"
-#include "sim/engine.h"
-#include "sim/sim.h"
 
 enum { N = 20 };
 
@@ -222,7 +215,7 @@ TEST(dashpots_by_modes_are_near_the_complex_modes_of_the_whole_beam)
 static SimResult simulated(const SceneOptions *o, const char *record, double gap, double duration_s, SceneKind kind)
 {
     SimResult r;
-    Settings s;
+    Settings s = default_settings();
     SceneOptions options = *o;
     const int n = strstr(o->building.model, "tower") ? 6 : N;
     double x[N + 2] = {0};
@@ -230,14 +223,13 @@ static SimResult simulated(const SceneOptions *o, const char *record, double gap
         x[j] = gap * (j + 1);
     x[n] = 0.03;
     x[n + 1] = 0.0216;
-    settings_defaults(&s);
     snprintf(s.motion.record, sizeof s.motion.record, "%s", record);
     s.motion.pga_g = 0.3;
     s.motion.stretch = n == N ? 3 : 1;
     options.sim.duration_s = duration_s;
     options.sim.forces = FORCES_YES;
     CHECK_OK(run_under(&options, &s.motion, kind, x, NULL, &r, &err), &err);
-    assert_int_equal(r.outcome, RUN_OK);
+    assert_ran(&r);
     return r;
 }
 
@@ -251,10 +243,7 @@ TEST(the_core_on_a_rotational_spring_has_its_known_frequencies_and_response)
     make(&core, &s);
     for (int i = 0; i < 4; i++)
         assert_close(core.omega[i] / (2 * M_PI), HZ[i], 1e-5);
-    if (access(record, R_OK) != 0) {
-        print_message("skipped: there are no records in ../shared/records\n");
-        return;
-    }
+    need_file(record);
     s.sim.accuracy = ACCURACY_FINE;
     const SimResult r = simulated(&s, record, 0.008, 11, SCENE_IMPACT);
     assert_close(r.j1_m, 0.433255, 1e-3);
@@ -417,7 +406,6 @@ TEST(a_rigid_core_rocks_on_its_lifting_mat_with_the_period_of_the_quadrature)
     FREED Rocking *r = calloc(1, sizeof *r);
     FREED CoreBeam *core = calloc(1, sizeof *core);
     double x[N + 2] = {[N] = 0.02, [N + 1] = 0.02}, z[N], J = 0;
-    Scene *scene;
     SimResult result;
     assert_true(r && core);
     for (int i = 0; i < 100; i++)
@@ -429,11 +417,11 @@ TEST(a_rigid_core_rocks_on_its_lifting_mat_with_the_period_of_the_quadrature)
     s.core.theory = CORE_EULER_BERNOULLI;
     s.sim.accuracy = ACCURACY_FINE;
     CHECK_OK(make_core_of(core, &s, N, 0.02, 0.02, &err), &err);
-    CHECK_OK(scene_create(&scene, &s, &motion, &err), &err);
-    CHECK_OK(sim_worker_create(&r->worker, scene, &err), &err);
+    OWNED(one_scene_free) OneScene stage = one_scene_of(&s, &motion);
+    r->worker = stage.worker;
     sim_worker_sample(r->worker, 0, note_top, r);
     CHECK_OK(sim_run(r->worker, SCENE_IMPACT, x, &result, &err), &err);
-    assert_int_equal(result.outcome, RUN_OK);
+    assert_ran(&result);
     assert_less(result.energy_balance_error, 1e-9);
     for (int i = 0; i < N; i++)
         z[i] = (i > 0 ? z[i - 1] : 0) + list_at(&s.building.heights_m, i);
@@ -457,8 +445,6 @@ TEST(a_rigid_core_rocks_on_its_lifting_mat_with_the_period_of_the_quadrature)
     assert_close(passed[n - 1 - (n - 1) % 2] - passed[0], (n - 1) / 2 * period(&core->uplift, J, theta), 2e-3);
     for (int i = 1; i + 1 < n; i++)
         assert_close(tops[i], tops[0], 1e-3);
-    sim_worker_free(r->worker);
-    scene_free(scene);
 }
 
 static SceneOptions small_tower(const char *foundation)
@@ -485,8 +471,7 @@ TEST(both_engines_agree_where_the_mat_lifts_and_their_books_close)
                           fast.edcs_pct);
             assert_less(1.2, fast.forces.uplift_ratio);
             assert_close(fast.j1_m, cvode.j1_m, 1e-5);
-            assert_close(fast.j3_g, cvode.j3_g, 1e-3);
-            assert_close(fast.edcs_pct, cvode.edcs_pct, 1e-3);
+            assert_close_in(fast, cvode, 1e-3, j3_g, edcs_pct);
             assert_close(fast.forces.base_rotation_rad, cvode.forces.base_rotation_rad, 1e-4);
             assert_close(fast.forces.core_overturning_nm, cvode.forces.core_overturning_nm, 1e-3);
             assert_less(fast.energy_balance_error, 1e-6);
@@ -520,7 +505,7 @@ static SimResult known_design(const char *anchors, double wall, Engine engine, S
     const SceneOptions options = settings_scene(&s);
     const LinearDevice links = {.link_ns_m = 0.9e6};
     CHECK_OK(run_under(&options, &s.motion, kind, KNOWN_DESIGN, &links, &r, &err), &err);
-    assert_int_equal(r.outcome, RUN_OK);
+    assert_ran(&r);
     return r;
 }
 
@@ -541,10 +526,7 @@ TEST(a_mat_that_lifts_and_a_weaker_core_have_their_known_response)
                  {" anchors=5", 0, 0.525, 0.0098, 0.45, 80, SCENE_LINKS},
                  {" anchors=inf", 0, 0.524, 0.0098, 0.45, 80, SCENE_LINKS},
                  {" anchors=inf", 0.5, 0.818, 0.0142, 0.57, 80, SCENE_LINKS}};
-    if (access(KOBE, R_OK) != 0) {
-        print_message("skipped: there are no records in ../shared/records\n");
-        return;
-    }
+    need_file(KOBE);
     for (size_t i = 0; i < N_OF(CASES); i++)
         for (Engine engine = ENGINE_FAST; engine <= (CASES[i].seconds < 80 ? ENGINE_CVODE : ENGINE_FAST); engine++) {
             const SimResult r = known_design(CASES[i].anchors, CASES[i].wall, engine, CASES[i].kind, CASES[i].seconds);
@@ -569,7 +551,6 @@ TEST(weight_alone_holds_a_mat_of_which_nothing_else_is_said)
                  {"rotation=1e11", "rotation=1e11"},
                  {"fixed", "fixed"}};
     for (size_t i = 0; i < N_OF(CASES); i++) {
-        char text[200];
         Settings put, stored;
         settings_defaults(&put);
         settings_defaults(&stored);
@@ -577,8 +558,7 @@ TEST(weight_alone_holds_a_mat_of_which_nothing_else_is_said)
         assert_string_equal(put.core.foundation, CASES[i].meant);
         CHECK_OK(settings_put(&put, "core.width_m", "10", &err), &err);
         assert_string_equal(put.core.foundation, CASES[i].meant);
-        snprintf(text, sizeof text, "[core]\nfoundation = %s\n", CASES[i].given);
-        CHECK_OK(settings_parse(&stored, "run.sqlite", text, &err), &err);
+        CHECK_OK(settings_parse(&stored, "run.sqlite", brief("[core]\nfoundation = %s\n", CASES[i].given), &err), &err);
         assert_string_equal(stored.core.foundation, CASES[i].given);
     }
     assert_same_number(parsed("soil=C radius=10").anchors, 0);
@@ -607,9 +587,7 @@ TEST(what_is_no_foundation_is_refused_in_words)
         Foundation f;
         err = (Err){0};
         assert_int_equal(foundation_parse(BAD[i].text, 1, &f, &err), STATUS_BAD_DATA);
-        if (strncmp(err.text, "core.foundation: ", 17) != 0 || !strstr(err.text, BAD[i].words))
-            print_error("%s: %s\n", BAD[i].text, err.text);
-        assert_non_null(strstr(err.text, BAD[i].words));
+        assert_words(err.text, "core.foundation: ", BAD[i].words);
     }
 }
 

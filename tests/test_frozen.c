@@ -21,8 +21,7 @@ typedef struct {
 /* Settings and variables are many and in lists of their own: of keys with a point the section alone counts. */
 static void add_key(Object *o, const char *key)
 {
-    char word[200];
-    snprintf(word, sizeof word, " %.*s", (int)strcspn(key, "."), key);
+    FREED char *word = formatted(" %.*s", (int)strcspn(key, "."), key);
     for (const char *at = o->keys; (at = strstr(at, word)); at++)
         if (at[strlen(word)] == ' ' || !at[strlen(word)])
             return;
@@ -52,7 +51,6 @@ static int is_result(const char *key)
 
 static void walk(Objects *all, const char *path, json_t *value)
 {
-    char below[200];
     const char *key;
     size_t i;
     json_t *part;
@@ -60,11 +58,9 @@ static void walk(Objects *all, const char *path, json_t *value)
     json_object_foreach(value, key, part)
     {
         add_key(o, key);
-        snprintf(below, sizeof below, "%.150s.%.40s", path, is_result(key) ? "RESULT" : key);
-        walk(all, below, part);
+        walk(all, brief("%.150s.%.40s", path, is_result(key) ? "RESULT" : key), part);
     }
-    snprintf(below, sizeof below, "%.190s[]", path);
-    json_array_foreach(value, i, part) walk(all, below, part);
+    json_array_foreach(value, i, part) walk(all, brief("%.190s[]", path), part);
 }
 
 /* One line for object i and those behind it that have the same keys, which are then done. */
@@ -93,9 +89,7 @@ static void write_kinds(FILE *list, const char *arguments, const char *out)
     if (!json && strstr(arguments, "--csv -"))
         fprintf(list, " -: %.*s\n", (int)strcspn(out, "\n"), out);
     for (const char *at = arguments; (at = strstr(at, "@/")); at++) {
-        char name[80];
-        snprintf(name, sizeof name, "%.*s", (int)strcspn(at + 2, " "), at + 2);
-        FREED char *path = in_place(name);
+        FREED char *name = formatted("%.*s", (int)strcspn(at + 2, " "), at + 2), *path = in_place(name);
         if (strstr(name, ".csv") && !strstr(name, "given") && access(path, R_OK) == 0) {
             FREED char *text = text_of(path);
             fprintf(list, " %s: %.*s\n", name, (int)strcspn(text, "\n"), text);
@@ -149,12 +143,8 @@ TEST(keys_of_json_and_columns_of_csv_are_those_of_the_list)
     char *all = shortened(now);
     free(now);
     now = all;
-    if (getenv("FREEZE")) {
-        FILE *f = fopen(getenv("FREEZE"), "w");
-        assert_non_null(f);
-        fputs(now, f);
-        fclose(f);
-    }
+    if (getenv("FREEZE"))
+        write_to(getenv("FREEZE"), now);
     assert_string_equal(now, wanted);
     free(now);
     free(wanted);

@@ -26,16 +26,14 @@ static void replay_file(const char *path, void (*target)(const uint8_t *, size_t
 
 static void replay(const char *name, void (*target)(const uint8_t *, size_t))
 {
-    char folder[64], path[PATH_MAX];
     int n = 0;
-    snprintf(folder, sizeof folder, "tests/fuzz/corpus/%s", name);
+    FREED char *folder = formatted("tests/fuzz/corpus/%s", name);
     DIR *d = opendir(folder);
     assert_non_null(d);
     for (const struct dirent *e; (e = readdir(d));) {
         if (e->d_name[0] == '.')
             continue;
-        snprintf(path, sizeof path, "%s/%s", folder, e->d_name);
-        replay_file(path, target);
+        replay_file(brief("%s/%s", folder, e->d_name), target);
         n++;
     }
     closedir(d);

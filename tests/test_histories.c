@@ -4,7 +4,6 @@
 #include "scene_options.h"
 
 #include "sim/floor_filter.h"
-#include "sim/sim.h"
 
 static double cell(const Table *t, size_t row, const char *column)
 {
@@ -12,6 +11,11 @@ static double cell(const Table *t, size_t row, const char *column)
     if (c < 0)
         fail_msg("there is no column %s", column);
     return t->values[row * t->n_cols + (size_t)c];
+}
+
+static double cell_of(const Table *t, size_t row, const char *format, int floor)
+{
+    return cell(t, row, brief(format, floor));
 }
 
 /* ---- the command ----------------------------------------------------------------------------------------------- */
@@ -22,14 +26,13 @@ enum { FLOORS = 6 };
 /* Six floors with gaps of 2 to 7 mm, and a record. */
 static void write_design(void)
 {
-    char head[256] = "", gaps[256] = "", text[1024];
+    char head[256] = "", gaps[256] = "";
     write_shaking("shaking.csv");
     for (int j = 0; j < FLOORS; j++) {
-        sprintf(head + strlen(head), "gap_%02d_m,", j + 1);
-        sprintf(gaps + strlen(gaps), "%g,", GAP(j));
+        append(head, "gap_%02d_m,", j + 1);
+        append(gaps, "%g,", GAP(j));
     }
-    snprintf(text, sizeof text, "%st_base_m,t_top_m\n%s0.02,0.02\n", head, gaps);
-    write_in_place("design.csv", text);
+    write_in_place("design.csv", brief("%st_base_m,t_top_m\n%s0.02,0.02\n", head, gaps));
 }
 
 /* What goes on in the window is written every EVERY seconds, to fast.csv, by the first test that needs it. */
@@ -43,7 +46,7 @@ TEST(forces_of_a_history_are_those_of_the_contact_law)
     write_design();
     json_auto_t *o =
         json_of("simulate " WINDOW "--json --history @/fast.csv --every " EVERY "--contacts @/contacts.csv");
-    const Table h = table_of("fast.csv"), contacts = table_of("contacts.csv");
+    OWNED(table_free) Table h = table_of("fast.csv"), contacts = table_of("contacts.csv");
     double largest = 0;
     const double nu = 0.3, k = 2 * 2.1e11 * sqrt(0.1) / (3 * (1 - nu * nu)), a = 1.5 * (1 - 0.7);
     size_t compared = 0;
@@ -54,34 +57,27 @@ TEST(forces_of_a_history_are_those_of_the_contact_law)
         const double from = cell(&contacts, i, "t_s"), to = from + cell(&contacts, i, "duration_s");
         const double v0 = fmax(cell(&contacts, i, "approach_m_s"), 1e-3), peak = cell(&contacts, i, "force_n");
         largest = fmax(largest, peak);
-        char name[5][32];
-        static const char *const PATTERN[5] = {"floor_%02d_m", "core_%02d_m", "floor_%02d_m_s", "core_%02d_m_s",
-                                               "contact_%02d_n"};
-        for (int c = 0; c < 5; c++)
-            snprintf(name[c], sizeof name[c], PATTERN[c], floor);
         for (size_t r = 0; r < h.n_rows; r++) {
             const double t = cell(&h, r, "t_s");
             if (!(t > from && t < to))
                 continue;
-            const double p = side * (cell(&h, r, name[0]) - cell(&h, r, name[1])) - GAP(floor - 1);
-            const double rate = side * (cell(&h, r, name[2]) - cell(&h, r, name[3]));
-            const double law = p > 0 ? fmax(k * pow(p, 1.5) * (1 + a * rate / v0), 0) : 0;
-            if (fabs(law + side * cell(&h, r, name[4])) > 5e-4 * peak)
-                fail_msg("t = %.6g s, floor %d: force %g N, by the law %g", t, floor, cell(&h, r, name[4]),
-                         -side * law);
+            const double u = cell_of(&h, r, "floor_%02d_m", floor) - cell_of(&h, r, "core_%02d_m", floor);
+            const double v = cell_of(&h, r, "floor_%02d_m_s", floor) - cell_of(&h, r, "core_%02d_m_s", floor);
+            const double force = cell_of(&h, r, "contact_%02d_n", floor), p = side * u - GAP(floor - 1);
+            const double law = p > 0 ? fmax(k * pow(p, 1.5) * (1 + a * side * v / v0), 0) : 0;
+            if (fabs(law + side * force) > 5e-4 * peak)
+                fail_msg("t = %.6g s, floor %d: force %g N, by the law %g", t, floor, force, -side * law);
             compared++;
         }
     }
     assert_less(10, compared);
     assert_close(largest, number(o, "contact_force_max_n"), 1e-12);
-    table_free((Table *)&h);
-    table_free((Table *)&contacts);
 }
 
 TEST(histories_of_both_engines_agree_before_the_horizon)
 {
     free(output_of("simulate " WINDOW "--set sim.engine=cvode --history @/cvode.csv --every " EVERY));
-    const Table a = table_of("fast.csv"), b = table_of("cvode.csv");
+    OWNED(table_free) Table a = table_of("fast.csv"), b = table_of("cvode.csv");
     assert_int_equal(a.n_rows, b.n_rows);
     assert_int_equal(a.n_cols, b.n_cols);
     for (size_t c = 1; c < a.n_cols; c++) {
@@ -93,30 +89,23 @@ TEST(histories_of_both_engines_agree_before_the_horizon)
         if (!(apart <= 2e-4 * most))
             fail_msg("%s: %g apart, largest %g", a.names[c], apart, most);
     }
-    table_free((Table *)&a);
-    table_free((Table *)&b);
 }
 
 TEST(a_history_reaches_the_peaks_and_its_energies_add_up)
 {
     json_auto_t *o = json_of("simulate " WINDOW "--json");
-    const Table h = table_of("fast.csv");
+    OWNED(table_free) Table h = table_of("fast.csv");
     double u = 0, drift = 0, accel = 0, input = 0, error = 0;
     for (size_t r = 0; r < h.n_rows; r++) {
         double parts = 0;
         for (int j = 1; j <= FLOORS; j++) {
-            char name[3][32];
-            snprintf(name[0], sizeof name[0], "floor_%02d_m", j);
-            snprintf(name[1], sizeof name[1], "drift_%02d_m", j);
-            snprintf(name[2], sizeof name[2], "accel_%02d_g", j);
-            u = fmax(u, fabs(cell(&h, r, name[0])));
-            drift = fmax(drift, fabs(cell(&h, r, name[1])));
-            accel = fmax(accel, fabs(cell(&h, r, name[2])));
+            u = fmax(u, fabs(cell_of(&h, r, "floor_%02d_m", j)));
+            drift = fmax(drift, fabs(cell_of(&h, r, "drift_%02d_m", j)));
+            accel = fmax(accel, fabs(cell_of(&h, r, "accel_%02d_g", j)));
         }
-        static const char *const PARTS[] = {"kinetic_j", "strain_j",      "damped_building_j",
-                                            "core_j",    "damped_core_j", "contacts_j"};
-        for (size_t k = 0; k < 6; k++)
-            parts += cell(&h, r, PARTS[k]);
+        FOR_EACH (const char *, part, "kinetic_j", "strain_j", "damped_building_j", "core_j", "damped_core_j",
+                  "contacts_j")
+            parts += cell(&h, r, *part);
         input = cell(&h, r, "input_j");
         error = fmax(error, fabs(parts - input));
     }
@@ -127,17 +116,14 @@ TEST(a_history_reaches_the_peaks_and_its_energies_add_up)
     assert_less(0, number(o, "j3_filtered_g"));
     free(output_of("simulate " SIX "--design none --history @/none.csv"));
     free(output_of("simulate " TOWER "--rigid --history @/rigid.csv --every 0.01"));
-    const Table none = table_of("none.csv");
+    OWNED(table_free) Table none = table_of("none.csv");
     assert_close(cell(&none, 1, "t_s"), 0.02, 1e-12);
-    table_free((Table *)&none);
-    const Table rigid = table_of("rigid.csv"); /* floor and core are one */
+    OWNED(table_free) Table rigid = table_of("rigid.csv"); /* floor and core are one */
     for (size_t r = 0; r < rigid.n_rows; r++) {
         assert_close(cell(&rigid, r, "t_s"), 0.01 * (double)r, 1e-9);
         assert_same_number(cell(&rigid, r, "floor_06_m"), cell(&rigid, r, "core_06_m"));
         assert_same_number(cell(&rigid, r, "floor_06_m_s"), cell(&rigid, r, "core_06_m_s"));
     }
-    table_free((Table *)&rigid);
-    table_free((Table *)&h);
 }
 
 TEST(options_of_time_files_are_checked_before_the_simulation)
@@ -145,8 +131,7 @@ TEST(options_of_time_files_are_checked_before_the_simulation)
     static const char *const WRONG[][2] = {
         {"--history @/x.csv --every nan", "--every"},       {"--history @/x.csv --every 1e-9", "not a number"},
         {"--history @/none/x.csv", "none/x.csv"},           {"--contacts @/none/x.csv", "none/x.csv"},
-        {"--rigid --contacts @/x.csv", "--contacts needs"}, {"--floor-spectra @/none/x.csv", "none/x.csv"},
-    };
+        {"--rigid --contacts @/x.csv", "--contacts needs"}, {"--floor-spectra @/none/x.csv", "none/x.csv"}};
     write_design();
     for (size_t i = 0; i < sizeof WRONG / sizeof WRONG[0]; i++) {
         OWNED(forget) Said said;
@@ -220,9 +205,6 @@ static void add_sums(const SimSample *s, void *user)
 
 TEST(the_base_shear_is_what_inertia_and_damping_need)
 {
-    OWNED(motion_free) Motion motion = {0};
-    Scene *scene;
-    SimWorker *worker;
     SimResult r;
     CoreBeam core;
     double x[22];
@@ -230,27 +212,24 @@ TEST(the_base_shear_is_what_inertia_and_damping_need)
     o.sim.duration_s = 6;
     o.sim.accuracy = ACCURACY_FINE;
     o.sim.forces = FORCES_YES;
-    MotionOptions m = {.record = "builtin:elcentro-like", .stretch = 1};
-    CHECK_OK(motion_open(&motion, &m, &err), &err);
-    CHECK_OK(scene_create(&scene, &o, &motion, &err), &err);
-    CHECK_OK(sim_worker_create(&worker, scene, &err), &err);
-    for (int j = 0; j < 22; j++)
-        x[j] = j < 20 ? 0.004 + 0.001 * j : j == 20 ? 0.012 : 0.0064;
-    CHECK_OK(core_beam_make(&core, &o.core, N, scene_building(scene)->storey_m, x[20], x[21], &err), &err);
-    const Building *of = scene_building(scene);
+    OWNED(motion_free) Motion motion = motion_of("builtin:elcentro-like", 0, 1);
+    OWNED(one_scene_free) OneScene stage = one_scene_of(&o, &motion);
+    const Building *of = scene_building(stage.scene);
+    paper_design(x, 0.004, 0.001);
+    CHECK_OK(core_beam_make(&core, &o.core, N, of->storey_m, x[20], x[21], &err), &err);
     double core_zeta[N];
     for (int i = 0; i < N; i++)
         core_zeta[i] = o.core.damping;
-    Sums s = {.worker = worker,
+    Sums s = {.worker = stage.worker,
               .building = weights_of(of->K, of->M, of->phi, of->omega, of->zeta),
               .core = weights_of(core.K, core.M, core.phi, core.omega, core_zeta),
               .room = 80000};
     s.at = malloc(s.room * sizeof *s.at);
     for (int j = 0; j < N; j++)
         s.mass += s.building.mass[j] + s.core.mass[j];
-    sim_worker_sample(worker, 1.6e-4, add_sums, &s);
-    CHECK_OK(sim_run(worker, SCENE_IMPACT, x, &r, &err), &err);
-    assert_int_equal(r.outcome, RUN_OK);
+    sim_worker_sample(stage.worker, 1.6e-4, add_sums, &s);
+    CHECK_OK(sim_run(stage.worker, SCENE_IMPACT, x, &r, &err), &err);
+    assert_ran(&r);
     assert_true(r.impacts > 20 && s.n > 30000);
     double shear = 0, inertia = 0, largest = 0, worst = 0, peak = 0;
     for (size_t k = 0; k + 2 < s.n; k += 2) { /* Simpson: base shear and ground over two samples */
@@ -265,8 +244,6 @@ TEST(the_base_shear_is_what_inertia_and_damping_need)
         fail_msg("base shear and inertia with damping differ by %g of %g N s", worst, largest);
     assert_close(r.forces.base_shear_n, peak, 1e-3);
     free(s.at);
-    sim_worker_free(worker);
-    scene_free(scene);
 }
 
 /* ---- the filter ------------------------------------------------------------------------------------------------ */
@@ -359,29 +336,23 @@ static void add_sample(const SimSample *s, void *user)
 
 TEST(samples_that_are_left_out_change_no_filtered_peak)
 {
-    OWNED(motion_free) Motion motion = {0};
-    Scene *scene;
-    SimWorker *worker;
     SimResult r;
     double x[22], peaks[20], worst = 0;
     SceneOptions o = paper_scene();
     o.sim.filtered = 1;
     o.sim.filter_hz = CUTOFF;
-    const MotionOptions m = {.record = "builtin:kobe-like", .pga_g = 0.3, .stretch = 3.1};
-    CHECK_OK(motion_open(&motion, &m, &err), &err);
-    CHECK_OK(scene_create(&scene, &o, &motion, &err), &err);
-    CHECK_OK(sim_worker_create(&worker, scene, &err), &err);
-    AllSamples all = {.worker = worker};
+    OWNED(motion_free) Motion motion = motion_of("builtin:kobe-like", 0.3, 3.1);
+    OWNED(one_scene_free) OneScene stage = one_scene_of(&o, &motion);
+    AllSamples all = {.worker = stage.worker};
     CHECK_OK(floor_filter_create(&all.filter, 20, CUTOFF, &err), &err);
     for (int design = 0; design < 4; design++) {
-        for (int j = 0; j < 22; j++)
-            x[j] = j < 20 ? 0.05 + 0.03 * design + 0.01 * j : j == 20 ? 0.012 : 0.0064;
-        sim_worker_sample(worker, 0, NULL, NULL);
-        CHECK_OK(sim_run(worker, SCENE_IMPACT, x, &r, &err), &err);
+        paper_design(x, 0.05 + 0.03 * design, 0.01);
+        sim_worker_sample(stage.worker, 0, NULL, NULL);
+        CHECK_OK(sim_run(stage.worker, SCENE_IMPACT, x, &r, &err), &err);
         assert_true(r.filtered_known && r.impacts > 20 && r.j3_filtered_g < r.j3_g);
         const SimResult few = r;
-        sim_worker_sample(worker, floor_filter_spacing(CUTOFF), add_sample, &all);
-        CHECK_OK(sim_run(worker, SCENE_IMPACT, x, &r, &err), &err);
+        sim_worker_sample(stage.worker, floor_filter_spacing(CUTOFF), add_sample, &all);
+        CHECK_OK(sim_run(stage.worker, SCENE_IMPACT, x, &r, &err), &err);
         assert_less(r.settled_s / floor_filter_spacing(CUTOFF), (double)all.samples);
         CHECK_OK(floor_filter_peaks(all.filter, peaks, &err), &err);
         for (int j = 0; j < 20; j++)
@@ -390,8 +361,6 @@ TEST(samples_that_are_left_out_change_no_filtered_peak)
     if (!(worst < 1e-4))
         fail_msg("a filtered peak differs by %g", worst);
     floor_filter_free(all.filter);
-    sim_worker_free(worker);
-    scene_free(scene);
 }
 
 /* ---- floor spectra ----------------------------------------------------------------------------------------------- */
@@ -400,29 +369,24 @@ TEST(samples_that_are_left_out_change_no_filtered_peak)
  * damping, 1 / (2 zeta) = 10 times the acceleration, and the acceleration itself far above. */
 TEST(a_sine_has_ten_times_its_acceleration_in_the_floor_spectrum)
 {
-    FREED char *folder = in_place("stiff"), *path = in_place("sine.csv");
-    assert_int_equal(mkdir(folder, 0777), 0);
-    write_in_place("stiff/storeys.csv", "height_m,mass_t,stiffness_kn_m\n4,1,40000000\n4,1,40000000\n");
-    FILE *f = fopen(path, "w");
-    assert_non_null(f);
+    write_storeys_in_place("stiff", "4,1e3,4e10\n4,1e3,4e10\n");
+    FILE *f = opened(there("sine.csv"), "w");
     fputs("t_s,a_m_s2\n", f);
     for (int i = 0; i <= 4000; i++)
         fprintf(f, "%.2f,%.12g\n", 0.01 * i, 0.981 * sin(2 * M_PI * 0.01 * i));
     fclose(f);
     free(output_of("simulate configs/quick.ini --design none --record @/sine.csv --set building.model=@/stiff "
                    "--set motion.pga_g=0 --set motion.stretch=1 --floor-spectra @/spectra.csv"));
-    const Table t = table_of("spectra.csv");
+    OWNED(table_free) Table t = table_of("spectra.csv");
     size_t nearest = 0;
     for (size_t r = 0; r < t.n_rows; r++) {
         if (fabs(cell(&t, r, "period_s") - 1) < fabs(cell(&t, nearest, "period_s") - 1))
             nearest = r;
         assert_close(cell(&t, r, "floor_01_psa_g"), cell(&t, r, "ground_psa_g"), 5e-3);
     }
-    const double ratio = cell(&t, nearest, "period_s");
-    const double wanted = 0.1 / hypot(1 - ratio * ratio, 0.1 * ratio);
+    const double ratio = cell(&t, nearest, "period_s"), wanted = 0.1 / hypot(1 - ratio * ratio, 0.1 * ratio);
     assert_close(cell(&t, nearest, "floor_02_psa_g"), wanted, 2e-2);
     assert_close(cell(&t, 0, "floor_02_psa_g"), 0.1, 5e-3);
-    table_free((Table *)&t);
 }
 
 /* ---- contacts that begin where a sample is ------------------------------------------------------------------------ */
@@ -432,9 +396,7 @@ static void write_one_floor(void)
 {
     FREED char *text = NULL;
     size_t length;
-    char folder[PATH_MAX];
-    assert_int_equal(mkdir(path_of("one", folder), 0777), 0);
-    write_in_place("one/storeys.csv", "height_m,mass_kg,stiffness_n_m\n4,3e5,2e7\n");
+    write_storeys_in_place("one", "4,3e5,2e7\n");
     FILE *f = open_memstream(&text, &length);
     fprintf(f, "time_s,accel_m_s2\n");
     for (int i = 0; i < 400; i++)
@@ -447,34 +409,27 @@ static void write_one_floor(void)
 /* Impacts of the floor with that gap, which the list of contacts has as well. */
 static long impacts_with(double gap, const char *law, const char *engine)
 {
-    char text[128], command[256];
-    snprintf(text, sizeof text, "gap_01_m,t_base_m,t_top_m\n%.17g,0.02,0.02\n", gap);
-    write_in_place("one/gap.csv", text);
-    snprintf(
-        command, sizeof command,
-        "simulate @/one/one.ini --design @/one/gap.csv --json --contacts @/one/contacts.csv --set sim.duration_s=3.5 "
-        "--set sim.engine=%s --set contact.law=%s",
-        engine, law);
-    json_auto_t *o = json_of("%s", command);
+    write_in_place("one/gap.csv", brief("gap_01_m,t_base_m,t_top_m\n%.17g,0.02,0.02\n", gap));
+    json_auto_t *o = json_of("simulate @/one/one.ini --design @/one/gap.csv --json --contacts @/one/contacts.csv --set "
+                             "sim.duration_s=3.5 --set sim.engine=%s --set contact.law=%s",
+                             engine, law);
     const long n = (long)number(o, "impacts");
-    const Table t = table_of("one/contacts.csv");
+    OWNED(table_free) Table t = table_of("one/contacts.csv");
     if (t.n_rows != (size_t)n)
         fail_msg("%s, %s, gap %.17g: %ld impacts, %zu contacts", engine, law, gap, n, t.n_rows);
-    table_free((Table *)&t);
     return n;
 }
 
 /* The gap is what lies between the two bodies at a sample, where nothing has touched before. */
 TEST(an_impact_that_begins_at_a_sample_counts_once)
 {
-    static const int SAMPLES[] = {38, 142};
     static const char *const LAWS[] = {"paper", "jankowski"}, *const ENGINES[] = {"fast", "cvode"};
     write_one_floor();
     write_in_place("one/gap.csv", "gap_01_m,t_base_m,t_top_m\n5,0.02,0.02\n");
     free(output_of("simulate @/one/one.ini --design @/one/gap.csv --csv /dev/null --history @/one/h.csv --every 0.02"));
-    const Table h = table_of("one/h.csv");
-    for (size_t i = 0; i < sizeof SAMPLES / sizeof SAMPLES[0]; i++) {
-        const size_t k = (size_t)SAMPLES[i];
+    OWNED(table_free) Table h = table_of("one/h.csv");
+    FOR_EACH (int, sample, 38, 142) {
+        const size_t k = (size_t)*sample;
         const double gap = fabs(cell(&h, k, "floor_01_m") - cell(&h, k, "core_01_m"));
         for (int law = 0; law < 2; law++)
             for (int engine = 0; engine < 2; engine++) {
@@ -484,7 +439,6 @@ TEST(an_impact_that_begins_at_a_sample_counts_once)
                 assert_int_equal(impacts_with(gap * (1 + 1e-9), LAWS[law], ENGINES[engine]), n);
             }
     }
-    table_free((Table *)&h);
 }
 
 SUITE(prepare, clear_place)

@@ -1,21 +1,15 @@
 /* The predictability horizon. */
-#include "check.h"
-
 #include "analysis/horizon.h"
 #include "scene_options.h"
 
 static void open_scenario(Scenario *w, double x[22], double gap_m)
 {
-    Settings s;
-    paper_defaults(&s);
+    Settings s = paper_settings();
     snprintf(s.motion.record, OPTION_TEXT_MAX, "builtin:sylmar-like");
     s.sim.duration_s = 16;
     const SceneOptions options = settings_scene(&s);
     CHECK_OK(scenario_of(w, &options, &s.motion, &err), &err);
-    for (int j = 0; j < 20; j++)
-        x[j] = gap_m * (j + 1);
-    x[20] = 0.012;
-    x[21] = 0.0064;
+    paper_design(x, gap_m, gap_m);
 }
 
 TEST(the_horizon_is_never_reached_without_contact)

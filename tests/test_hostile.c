@@ -60,30 +60,26 @@ static const struct {
     {"eval [string repeat \\[ 300000]\n", ":1: "},
     {"expr [string repeat ( 300000]1[string repeat ) 300000]\n", "holds no element"},
     {HEAD "fix 1 1 1 1\nequalDOF 1 2 1\nequalDOF 2 1 1\n", ":6: equalDOF: node 1 and node 2 are one"},
-    {HEAD "set s [socket -server x 0]\n", ":4: 'socket' is not among"},
-};
+    {HEAD "set s [socket -server x 0]\n", ":4: 'socket' is not among"}};
 enum { N_HOSTILE = sizeof HOSTILE / sizeof HOSTILE[0] };
 
 static Status read_model(const char *path, Err *why)
 {
     OWNED(frame_free) Frame f;
-    const Status status = opensees_read(&f, path, 1, 1, 0, why);
-    return status;
+    return opensees_read(&f, path, 1, 1, 0, why);
 }
 
 TEST(forty_hostile_models_are_refused_with_their_line_and_leave_the_caller_alone)
 {
     static Err errors[N_HOSTILE];
-    char path[PATH_MAX], file[64];
-    char *folder = in_place("models"), *fifo = in_place("models/fifo.tcl"), *link = in_place("models/link.txt");
+    char path[PATH_MAX];
+    FREED char *folder = in_place("models"), *fifo = in_place("models/fifo.tcl"), *link = in_place("models/link.txt");
     assert_int_equal(mkdir(folder, 0777), 0);
     assert_int_equal(mkfifo(fifo, 0777), 0);
     assert_int_equal(symlink("/etc/passwd", link), 0);
     write_in_place("up.txt", "x\n");
-    for (int i = 0; i < N_HOSTILE; i++) {
-        snprintf(file, sizeof file, "models/%02d.tcl", i);
-        write_in_place(file, HOSTILE[i].text);
-    }
+    for (int i = 0; i < N_HOSTILE; i++)
+        write_in_place(brief("models/%02d.tcl", i), HOSTILE[i].text);
     const double begin = now_s();
 #pragma omp parallel for schedule(dynamic) num_threads(4) private(path)
     for (int i = 0; i < N_HOSTILE; i++) {
@@ -100,9 +96,6 @@ TEST(forty_hostile_models_are_refused_with_their_line_and_leave_the_caller_alone
     assert_int_equal(access(fifo, F_OK), 0);
     snprintf(path, sizeof path, "%s/out.txt", folder);
     assert_int_equal(access(path, F_OK), -1); /* what a model writes goes nowhere */
-    free(folder);
-    free(fifo);
-    free(link);
 }
 
 /* Brackets in brackets; a model that is a device, a pipe or a folder, by a link too. */
@@ -134,10 +127,9 @@ TEST(a_model_changes_neither_locale_nor_signals_nor_limits_of_its_caller)
 {
     struct rlimit before, after;
     write_in_place("bad.tcl", "set x a; while 1 {append x $x}\n");
-    FREED char *path = in_place("bad.tcl");
     err = (Err){0};
     getrlimit(RLIMIT_AS, &before);
-    assert_int_equal(read_model(path, &err), STATUS_BAD_DATA);
+    assert_int_equal(read_model(there("bad.tcl"), &err), STATUS_BAD_DATA);
     getrlimit(RLIMIT_AS, &after);
     assert_true(before.rlim_cur == after.rlim_cur);
     expect(65, "bad.tcl:1: ", "building @/bad.tcl --set building.units=N_m_kg");

@@ -9,19 +9,15 @@ TEST(a_range_of_intensities_ends_at_its_end_in_round_numbers)
     size_t n;
     CHECK_OK(ida_levels("--pga", "0.05:0.05:0.6", levels, &n, &err), &err);
     assert_int_equal(n, 12);
-    for (size_t i = 0; i < n; i++) {
-        char text[16];
-        snprintf(text, sizeof text, "%.2f", 0.05 * (double)(i + 1));
-        assert_same_number(levels[i], strtod(text, NULL));
-    }
+    for (size_t i = 0; i < n; i++)
+        assert_same_number(levels[i], strtod(brief("%.2f", 0.05 * (double)(i + 1)), NULL));
     CHECK_OK(ida_levels("--pga", "0.1:0.25:0.7", levels, &n, &err), &err);
     assert_int_equal(n, 3); /* 0.1, 0.35, 0.6 */
     CHECK_OK(ida_levels("--pga", "0.3:1:0.3", levels, &n, &err), &err);
     assert_int_equal(n, 1);
-    static const char *const BAD[] = {"0:0.1:1", "0.1:0:1", "0.5:0.1:0.4", "0.1:0.1",       "0.1:0.1:1g",
-                                      "a:b:c",   "nan:1:2", "0.1:0.1:inf", "0.001:0.001:2", "1e-9:1e-18:1"};
-    for (size_t i = 0; i < sizeof BAD / sizeof BAD[0]; i++)
-        assert_int_equal(ida_levels("--pga", BAD[i], levels, &n, &err), STATUS_USAGE);
+    FOR_EACH (const char *, bad, "0:0.1:1", "0.1:0:1", "0.5:0.1:0.4", "0.1:0.1", "0.1:0.1:1g", "a:b:c", "nan:1:2",
+              "0.1:0.1:inf", "0.001:0.001:2", "1e-9:1e-18:1")
+        assert_int_equal(ida_levels("--pga", *bad, levels, &n, &err), STATUS_USAGE);
 }
 
 /* n records of which J1 is as given (INFINITY: failed), one intensity. */
@@ -36,8 +32,7 @@ static double fractile_of(size_t n, const double j1[], double p)
         run[i].result[SCENE_IMPACT].outcome = isfinite(j1[i]) ? RUN_OK : RUN_NOT_FINITE;
     }
     const Evaluations e = {.n_records = n, .n_levels = 1, .record = record, .level = &level, .run = run, .n_read = n};
-    const double value = ida_fractile(&e, 0, SCENE_IMPACT, 0, p);
-    return value;
+    return ida_fractile(&e, 0, SCENE_IMPACT, 0, p);
 }
 
 TEST(fractiles_are_straight_lines_between_the_sorted_values)
@@ -61,7 +56,6 @@ TEST(a_failed_simulation_counts_as_infinite)
 }
 
 /* ---- as a command ------------------------------------------------------------------------------------------------ */
-
 #define RANGE                                                                                                          \
     "evaluate @/run --design knee --record builtin:elcentro-like --record builtin:sylmar-like --pga 0.1:0.1:0.3 "
 
@@ -124,9 +118,7 @@ TEST(the_csv_has_every_run_and_the_fractiles_at_any_number_of_threads)
 TEST(the_table_and_the_picture_show_the_three_scenes)
 {
     FREED char *table = output_of(RANGE);
-    static const char *const WORDS[] = {"with core, 2 records: median", "rigidly connected, 2 records", "no core, 2"};
-    for (int i = 0; i < 3; i++)
-        assert_non_null(strstr(table, WORDS[i]));
+    assert_words(table, "with core, 2 records: median", "rigidly connected, 2 records", "no core, 2");
     if (has_browser()) {
         free(output_of(RANGE "--svg @/ida.svg"));
         FREED char *svg = read_in_place("ida.svg");
@@ -145,12 +137,7 @@ TEST(a_range_does_not_go_with_another_scaling)
 TEST(names_of_records_are_whole_and_rows_go_to_csv)
 {
     static const char NAME[] = "a_record_with_a_name_that_is_much_longer_than_forty_characters.csv";
-    char name[128];
-    FREED char *folder = in_place("many");
-    snprintf(name, sizeof name, "mkdir -p %s", folder);
-    assert_int_equal(system(name), 0);
-    snprintf(name, sizeof name, "many/%s", NAME);
-    write_in_place(name, "t,a_m_s2\n0,0\n0.02,1\n0.04,-2\n0.06,1\n0.08,0.5\n");
+    write_in_place(brief("many/%s", NAME), "t,a_m_s2\n0,0\n0.02,1\n0.04,-2\n0.06,1\n0.08,0.5\n");
     write_in_place("many/b.csv", "t,a_m_s2\n0,0\n0.02,1\n0.04,oops\n");
     FREED char *table = output_of("evaluate @/run --design knee --record @/many");
     assert_words(table, "a_record_with_a_name_that_is_much_longer_than_forty_characters.csv  no core", "not read: ");
@@ -163,10 +150,12 @@ TEST(names_of_records_are_whole_and_rows_go_to_csv)
 TEST(the_csv_has_mean_and_deviation_of_the_replicates_as_the_json_has)
 {
 #define REPLICATED "evaluate @/run --design knee --set sim.gap_tolerance_m=0.01 "
-    json_t *o = json_of(REPLICATED "--replicates 3 --json"), *r = json_object_get(record_at(o, 0), "replicates");
+    json_auto_t *o = json_of(REPLICATED "--replicates 3 --json");
+    const json_t *r = json_object_get(record_at(o, 0), "replicates");
     free(output_of(REPLICATED "--set sim.replicates=3 --csv @/replicates.csv"));
-    char *text = read_in_place("replicates.csv"), *rest = text, *header = strsep(&rest, "\n"), *name, *cell;
-    char *row = strsep(&rest, "\n"), *rigid = strsep(&rest, "\n");
+    FREED char *text = read_in_place("replicates.csv");
+    char *rest = text, *header = strsep(&rest, "\n"), *row = strsep(&rest, "\n"), *rigid = strsep(&rest, "\n");
+    char *name, *cell;
     int n = 0;
     assert_non_null(strstr(row, ",1,3,mean,as built,"));
     assert_non_null(strstr(rigid, ",,,,,,,,"));
@@ -175,15 +164,12 @@ TEST(the_csv_has_mean_and_deviation_of_the_replicates_as_the_json_has)
         const int is_mean = end && strcmp(end, "_mean") == 0, is_sd = end && strcmp(end, "_sd") == 0;
         if (!is_mean && !is_sd)
             continue;
-        char key[64];
-        snprintf(key, sizeof key, "%.*s", (int)(end - name), name);
+        FREED char *key = formatted("%.*s", (int)(end - name), name);
         const json_t *wanted = json_object_get(json_object_get(r, is_mean ? "mean" : "sd"), key);
         n += json_is_number(wanted);
         assert_true(json_is_number(wanted) ? strtod(cell, NULL) == json_number_value(wanted) : !*cell);
     }
     assert_less(20, n);
-    free(text);
-    json_decref(o);
     expect_output("  mean of 3, sd as built", REPLICATED "--replicates 3 --record @/many");
     expect(2, "every intensity is simulated once", RANGE "--set sim.replicates=3");
 }

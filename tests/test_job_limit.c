@@ -5,10 +5,8 @@
 
 TEST(the_environment_says_when_the_job_ends)
 {
-    char end[32];
     double seconds;
-    snprintf(end, sizeof end, "%ld", (long)time(NULL) + 3600);
-    setenv("SLURM_JOB_END_TIME", end, 1);
+    setenv("SLURM_JOB_END_TIME", brief("%ld", (long)time(NULL) + 3600), 1);
     CHECK_OK(job_seconds(&seconds, &err), &err);
     assert_less(fabs(seconds - (3600.0 - JOB_MARGIN_S)), 3.0);
     unsetenv("SLURM_JOB_END_TIME");
@@ -17,18 +15,16 @@ TEST(the_environment_says_when_the_job_ends)
 TEST(else_scontrol_does)
 {
     double seconds;
-    char path[4096], text[512], day[64], *scontrol = in_place("scontrol");
+    char day[64];
     const time_t end = time(NULL) + 1000;
     struct tm parts;
     localtime_r(&end, &parts);
     strftime(day, sizeof day, "%Y-%m-%dT%H:%M:%S", &parts);
-    snprintf(text, sizeof text,
-             "#!/bin/sh\n[ \"$4\" = 17 ] || exit 1\necho 'JobId=17 StartTime=x EndTime=%s Deadline=N/A'\n", day);
-    write_in_place("scontrol", text);
-    assert_int_equal(chmod(scontrol, 0755), 0);
-    free(scontrol);
-    snprintf(path, sizeof path, "%s:%s", place.folder, getenv("PATH"));
-    setenv("PATH", path, 1);
+    write_in_place("scontrol", brief("#!/bin/sh\n[ \"$4\" = 17 ] || exit 1\n"
+                                     "echo 'JobId=17 StartTime=x EndTime=%s Deadline=N/A'\n",
+                                     day));
+    assert_int_equal(chmod(there("scontrol"), 0755), 0);
+    setenv("PATH", brief("%s:%s", place.folder, getenv("PATH")), 1);
     setenv("SLURM_JOB_ID", "17", 1);
     CHECK_OK(job_seconds(&seconds, &err), &err);
     assert_less(fabs(seconds - (1000.0 - JOB_MARGIN_S)), 3.0);
@@ -43,9 +39,7 @@ TEST(else_scontrol_does)
 TEST(without_a_job_or_with_too_short_a_one_it_is_refused)
 {
     expect(65, "this is no job of Slurm", "optimize configs/quick.ini --out @/none --max-hours auto");
-    char end[32];
-    snprintf(end, sizeof end, "%ld", (long)time(NULL) + 60);
-    setenv("SLURM_JOB_END_TIME", end, 1);
+    setenv("SLURM_JOB_END_TIME", brief("%ld", (long)time(NULL) + 60), 1);
     expect(65, "give it more time", "optimize configs/quick.ini --out @/none --max-hours auto");
     unsetenv("SLURM_JOB_END_TIME");
 }
@@ -53,12 +47,10 @@ TEST(without_a_job_or_with_too_short_a_one_it_is_refused)
 /* 122 s from now, of which 120 are kept back; resumed with the same words, which are no other limit. */
 TEST(a_run_ends_before_its_job_and_goes_on_in_the_next)
 {
-    char end[32];
     write_in_place("slow.ini", "[problem]\nkind = external\ncommand = sh tests/worker.sh steady\nvariables = 3\n"
                                "objectives = 2\n[search]\nmax_evals = 4000\nsurrogate = off\nmax_hours = auto\n");
     for (int i = 0; i < 2; i++) {
-        snprintf(end, sizeof end, "%ld", (long)time(NULL) + 124);
-        setenv("SLURM_JOB_END_TIME", end, 1);
+        setenv("SLURM_JOB_END_TIME", brief("%ld", (long)time(NULL) + 124), 1);
         expect(75, "Resume it with", i ? "optimize @/slow" : "optimize @/slow.ini --out @/slow");
     }
     unsetenv("SLURM_JOB_END_TIME");
@@ -67,20 +59,16 @@ TEST(a_run_ends_before_its_job_and_goes_on_in_the_next)
 
 static void write_program(const char *name, const char *text)
 {
-    FREED char *path = in_place(name);
     write_in_place(name, text);
-    assert_int_equal(chmod(path, 0755), 0);
+    assert_int_equal(chmod(there(name), 0755), 0);
 }
 
 static int status_of_wrapper(int mpirun_status)
 {
-    char command[4096];
-    snprintf(
-        command, sizeof command,
-        "STATUS=%d PATH='%s':\"$PATH\" scripts/imtet-mpirun -n 2 '%s/imtet_mpi' optimize x.ini --out '%s/lost_run' "
-        ">/dev/null 2>&1",
-        mpirun_status, place.folder, place.folder, place.folder);
-    const int status = system(command);
+    const int status =
+        system(brief("STATUS=%d PATH='%s':\"$PATH\" scripts/imtet-mpirun -n 2 '%s/imtet_mpi' optimize x.ini --out "
+                     "'%s/lost_run' >/dev/null 2>&1",
+                     mpirun_status, place.folder, place.folder, place.folder));
     assert_true(WIFEXITED(status));
     return WEXITSTATUS(status);
 }
@@ -88,9 +76,6 @@ static int status_of_wrapper(int mpirun_status)
 /* 205: Open MPI, where the daemon of a node is gone. */
 TEST(a_lost_node_is_75_until_three_attempts_have_brought_no_evaluation)
 {
-    static const int LISTED[] = {0, 2, 65, 66, 69, 70, 71, 74, 75};
-    FREED char *folder = in_place("lost_run");
-    assert_int_equal(mkdir(folder, 0755), 0);
     write_program("mpirun", "#!/bin/sh\nexit $STATUS\n");
     write_program("imtet_mpi", "#!/bin/sh\n[ \"$1\" = status ] && cat \"$2/n\"\n");
     write_in_place("lost_run/n", "{\n  \"simulated\": 40,\n}\n");
@@ -100,8 +85,8 @@ TEST(a_lost_node_is_75_until_three_attempts_have_brought_no_evaluation)
     write_in_place("lost_run/n", "{\n  \"simulated\": 41,\n}\n");
     assert_int_equal(status_of_wrapper(1), 75);
     assert_int_equal(status_of_wrapper(139), 70);
-    for (size_t i = 0; i < sizeof LISTED / sizeof LISTED[0]; i++)
-        assert_int_equal(status_of_wrapper(LISTED[i]), LISTED[i]);
+    FOR_EACH (int, listed, 0, 2, 65, 66, 69, 70, 71, 74, 75)
+        assert_int_equal(status_of_wrapper(*listed), *listed);
     for (int i = 0; i < 3; i++)
         assert_int_equal(status_of_wrapper(205), 75);
     assert_int_equal(status_of_wrapper(205), 70);

@@ -3,17 +3,15 @@
 #include "program.h"
 
 #include "analysis/ladder.h"
-#include "settings/settings.h"
+#include "towers.h"
 
 enum { N = 5 };
 
 /* Five storeys so soft that their weights matter. */
 static int make_building(void **state)
 {
-    char *folder;
-    if (make_place(state) != 0 || mkdir(folder = in_place("soft"), 0777) != 0)
+    if (make_place(state) != 0)
         return -1;
-    free(folder);
     write_in_place("soft/storeys.csv", "height_m,mass_t,stiffness_kn_m\n4,300,60000\n4,300,50000\n4,300,40000\n"
                                        "4,300,30000\n4,300,20000\n");
     return 0;
@@ -21,10 +19,8 @@ static int make_building(void **state)
 
 static Settings scene_of(const char *const sets[])
 {
-    Settings s;
-    settings_defaults(&s);
-    FREED char *folder = in_place("soft");
-    CHECK_OK(settings_put(&s, "building.model", folder, &err), &err);
+    Settings s = default_settings();
+    CHECK_OK(settings_put(&s, "building.model", there("soft"), &err), &err);
     CHECK_OK(settings_set(&s, "core.width_m=5", &err), &err);
     CHECK_OK(settings_set(&s, "motion.record=builtin:sylmar-like", &err), &err);
     CHECK_OK(settings_set(&s, "motion.pga_g=0.3", &err), &err);
@@ -55,15 +51,6 @@ static const LadderEffect *effect(const Ladder *l, const char *key)
         if (strcmp(l->effect[i].key, key) == 0)
             return &l->effect[i];
     return NULL;
-}
-
-static SimResult simulated_as(SceneKind kind, const Settings *s, const double x[])
-{
-    OWNED(problem_close) Problem p;
-    SimResult r;
-    CHECK_OK(tower_open(&p, s, TOWER_SINGLE, 1, &err), &err);
-    CHECK_OK(tower_simulate(&p, 1, &(SimTask){.kind = kind, .x = x}, &r, &err), &err);
-    return r;
 }
 
 static SimResult simulated(const Settings *s, const double x[])

@@ -2,7 +2,6 @@
 #include "runs.h"
 
 #include "store/run.h"
-#include "study/study.h"
 
 /* f1 + f2 + f3 of dtlz2 is 1 at least on and above its front, the unit sphere: these limits cannot be kept. */
 static const char UNMET[] = DTLZ2_INI(6, 3) "[search]\ninitial = 12\npopulation = 12\nmax_evals = 40\nthreads = 1\n"
@@ -43,10 +42,9 @@ TEST(limits_that_nothing_keeps_end_with_the_nearest_designs)
 
     FREED char *front = read_in_place("unmet/front.csv");
     assert_string_equal(strchr(front, '\n'), "\n");
-    static const char *const USES[] = {"choose @/unmet", "report @/unmet", "report @/unmet --pictures @/p"};
-    for (size_t i = 0; i < sizeof USES / sizeof USES[0]; i++) {
-        expect(69, "none of 40 designs keeps f1<=0.2,f2<=0.2,f3<=0.2", USES[i]);
-        expect(69, "unmet/nearest.csv", USES[i]);
+    FOR_EACH (const char *, use, "choose @/unmet", "report @/unmet", "report @/unmet --pictures @/p") {
+        expect(69, "none of 40 designs keeps f1<=0.2,f2<=0.2,f3<=0.2", *use);
+        expect(69, "unmet/nearest.csv", *use);
     }
 }
 
@@ -72,13 +70,6 @@ TEST(the_nearest_are_in_the_order_of_what_they_miss_without_failed_and_screened_
     assert_int_equal(rows[2], 2);
 }
 
-/* Lets `left` questions pass, then stops. */
-static int stop_after(void *user)
-{
-    long *left = user;
-    return (*left)-- <= 0;
-}
-
 static size_t simulated_shown;
 
 static void see_progress(const StudyProgress *p, void *user)
@@ -92,9 +83,7 @@ static void see_progress(const StudyProgress *p, void *user)
  * (0.2 + t)^2 + (0.2 + t)^2 + (0.6 + t)^2 = 1 gives t = 0.21235. */
 static double most_behind(const char *name)
 {
-    char file[64];
-    snprintf(file, sizeof file, "%s/front.csv", name);
-    OWNED(table_free) Table t = table_of(file);
+    OWNED(table_free) Table t = table_of(brief("%s/front.csv", name));
     double best = INFINITY;
     for (size_t i = 0; i < t.n_rows; i++) {
         const double *f = t.values + i * t.n_cols + table_column(&t, "f1");
@@ -136,14 +125,12 @@ TEST(a_run_without_a_front_says_why_there_is_none)
 {
     const Settings s = settings_of(UNMET, "begun");
     StudySummary summary;
-    long left = 5;
-    assert_int_equal(study_run(&s, &(StudyOptions){.stop = stop_after, .progress = see_progress, .user = &left},
+    assert_int_equal(study_run(&s, &(StudyOptions){.stop = stop_after, .progress = see_progress, .user = &(int){5}},
                                &summary, NULL, &err),
                      STATUS_STOPPED);
     assert_true(summary.n_simulated > 0 && summary.n_simulated < 12);
     assert_in_range(simulated_shown, 1, summary.n_simulated);
-    char wanted[96];
-    snprintf(wanted, sizeof wanted, "before the initial sample is complete; %zu designs", summary.n_simulated);
+    FREED char *wanted = formatted("before the initial sample is complete; %zu designs", summary.n_simulated);
     expect(65, wanted, "choose @/begun");
     expect(65, wanted, "report @/begun");
 

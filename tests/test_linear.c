@@ -1,14 +1,10 @@
 /* Baselines: floors and core as one, a tuned mass, links. */
 #include <complex.h>
 
-#include "base/linalg.h"
-#include "check.h"
 #include "scene_options.h"
-#include "sim/engine.h"
 #include "sim/joined.h"
 #include "analysis/baselines.h"
 #include "evaluate/device.h"
-#include "settings/settings.h"
 
 enum { N = 3 };
 
@@ -53,12 +49,6 @@ static void make_frame(Frame *f, int n, double k, double m, double zeta)
                                  .like = f->like};
 }
 
-static void make_core(CoreBeam *core, const SceneOptions *o, int n)
-{
-    const double storey[N] = {3, 3, 3};
-    CHECK_OK(core_beam_make(core, &o->core, n, storey, 0.02, 0.01, &err), &err);
-}
-
 static void add_devices(SimModel *m, SceneKind kind, double mass, LinearDevice d)
 {
     const double w = 2 * M_PI * d.tmd_hz;
@@ -79,13 +69,12 @@ static SimResult run_system(SceneKind kind, const Frame *f, const CoreBeam *core
     const SceneOptions o = paper_scene();
     const EngineOptions fine = {.duration = (double)(motion->n - 1) * motion->dt_s, .accuracy = ACCURACY_FINE};
     OWNED(model_free) SimModel m;
-    SimResult r;
+    SimResult r = {0};
     if (kind == SCENE_RIGID)
         CHECK_OK(joined_make(&both, &f->b, core, &err), &err);
     CHECK_OK(model_create(&m, f->b.n, f->b.n, &err), &err);
     CHECK_OK(model_set(&m, &o, &both.building, kind == SCENE_LINKS ? core : NULL, NULL, &err), &err);
     add_devices(&m, kind, core->mass_kg, device);
-    memset(&r, 0, sizeof r);
     CHECK_OK(engine_fast(&m, motion, &fine, &r, &err), &err);
     if (kind == SCENE_RIGID)
         joined_book(&both, &r);
@@ -223,14 +212,15 @@ static void modal_damping(int n, int first, int size, const double M[], const do
                 C[(first + i) * n + first + j] += 2 * zeta * omega[k] * m_phi[i * size + k] * m_phi[j * size + k];
 }
 
-static void invert(int n, const double A[], double out[])
+/* What the masses, written over, add to stiffness and damping. */
+static void lay_out_masses(Physical *p, double M[])
 {
-    double copy[4 * N * N];
-    memcpy(copy, A, (size_t)(n * n) * sizeof *A);
-    memset(out, 0, (size_t)(n * n) * sizeof *out);
-    for (int i = 0; i < n; i++)
-        out[i * n + i] = 1;
-    CHECK_OK(linalg_solve_spd(n, n, copy, out, &err), &err);
+    const int n = p->n;
+    for (int i = 0; i < n * n; i++) {
+        p->load[i / n] += M[i];
+        p->M_inverse[i] = i / n == i % n;
+    }
+    CHECK_OK(linalg_solve_spd(n, n, M, p->M_inverse, &err), &err);
 }
 
 /* Building and core side by side. */
@@ -238,8 +228,7 @@ static void lay_out_pair(Physical *p, const SceneOptions *o, const Frame *f, con
 {
     const int n = 2 * N;
     double M[4 * N * N] = {0};
-    memset(p, 0, sizeof *p);
-    p->n = n;
+    *p = (Physical){.n = n};
     for (int i = 0; i < N; i++)
         for (int j = 0; j < N; j++) {
             p->K[i * n + j] = f->K[i * N + j];
@@ -255,10 +244,7 @@ static void lay_out_pair(Physical *p, const SceneOptions *o, const Frame *f, con
         p->C[j * n + N + j] -= c;
         p->C[(N + j) * n + j] -= c;
     }
-    for (int i = 0; i < n; i++)
-        for (int j = 0; j < n; j++)
-            p->load[i] += M[i * n + j];
-    invert(n, M, p->M_inverse);
+    lay_out_masses(p, M);
 }
 
 static void lay_out_tmd(Physical *p, const Frame *f, double mass, LinearDevice d)
@@ -266,8 +252,7 @@ static void lay_out_tmd(Physical *p, const Frame *f, double mass, LinearDevice d
     const int n = N + 1;
     const double w = 2 * M_PI * d.tmd_hz, k = mass * w * w, c = 2 * d.tmd_damping * mass * w;
     double M[4 * N * N] = {0};
-    memset(p, 0, sizeof *p);
-    p->n = n;
+    *p = (Physical){.n = n};
     for (int i = 0; i < N; i++)
         for (int j = 0; j < N; j++) {
             p->K[i * n + j] = f->K[i * N + j];
@@ -280,43 +265,48 @@ static void lay_out_tmd(Physical *p, const Frame *f, double mass, LinearDevice d
             p->K[i * n + j] += i == j ? k : -k;
             p->C[i * n + j] += i == j ? c : -c;
         }
-    for (int i = 0; i < n; i++)
-        for (int j = 0; j < n; j++)
-            p->load[i] += M[i * n + j];
-    invert(n, M, p->M_inverse);
+    lay_out_masses(p, M);
 }
 
-enum { SHAKES = 301 };
-static void make_shaking(double accel[SHAKES])
+/* Three floors around a core so slender that its fastest mode needs no tiny steps, and what shakes them. */
+static Motion make_pair(Frame *f, CoreBeam *core, SceneOptions *o)
 {
+    enum { SHAKES = 301 };
+    static double accel[SHAKES];
+    static const double storey[N] = {3, 3, 3};
+    o->core.width_m = 1;
+    make_frame(f, N, 4e7, 1e5, 0.03);
+    CHECK_OK(core_beam_make(core, &o->core, N, storey, 0.02, 0.01, &err), &err);
     for (int i = 0; i < SHAKES; i++)
         accel[i] = 3 * sin(0.13 * i) * cos(0.031 * i * i * 0.05) * (i < 250 ? 1 : 0);
+    return (Motion){.dt_s = 0.05, .n = SHAKES, .accel = accel};
+}
+
+static void assert_as_integrated(const SimResult *r, const Physical *p, const Motion *m)
+{
+    double J[3];
+    integrate(p, N, m, 400, J);
+    assert_close(r->j1_m, J[0], 1e-6);
+    assert_close(r->j2_m, J[1], 1e-6);
+    assert_close(r->j3_g, J[2], 1e-5);
+    assert_less(r->energy_balance_error, 1e-7);
 }
 
 TEST(tuned_mass_and_links_agree_with_runge_and_kutta_in_the_displacements)
 {
     SceneOptions o = paper_scene();
-    double accel[SHAKES], J[3];
     Frame f;
     Physical p;
     FREED CoreBeam *core = calloc(1, sizeof *core);
     const LinearDevice d = {.tmd_hz = 1.3, .tmd_damping = 0.2, .link_ns_m = 4e5};
-    o.core.width_m = 1; /* slender, so that its fastest mode needs no tiny steps */
-    make_shaking(accel);
-    make_frame(&f, N, 4e7, 1e5, 0.03);
-    make_core(core, &o, N);
-    const Motion m = {.dt_s = 0.05, .n = SHAKES, .accel = accel};
+    const Motion m = make_pair(&f, core, &o);
     for (int is_tmd = 0; is_tmd < 2; is_tmd++) {
         const SimResult r = run_system(is_tmd ? SCENE_TMD : SCENE_LINKS, &f, core, d, &m);
         if (is_tmd)
             lay_out_tmd(&p, &f, core->mass_kg, d);
         else
             lay_out_pair(&p, &o, &f, core, d.link_ns_m);
-        integrate(&p, N, &m, 400, J);
-        assert_close(r.j1_m, J[0], 1e-6);
-        assert_close(r.j2_m, J[1], 1e-6);
-        assert_close(r.j3_g, J[2], 1e-5);
-        assert_less(r.energy_balance_error, 1e-7);
+        assert_as_integrated(&r, &p, &m);
         assert_true(r.stroke_m > 0 && r.dashpot_n > 0);
     }
 }
@@ -362,15 +352,11 @@ TEST(friction_takes_four_times_its_force_over_the_stiffness_from_every_cycle)
 TEST(links_without_damping_are_no_links_and_with_much_of_it_the_rigid_connection)
 {
     SceneOptions o = paper_scene();
-    double accel[SHAKES], J[3];
+    double J[3];
     Frame f;
     Physical p;
     FREED CoreBeam *core = calloc(1, sizeof *core);
-    o.core.width_m = 1; /* slender, as above */
-    make_shaking(accel);
-    make_frame(&f, N, 4e7, 1e5, 0.03);
-    make_core(core, &o, N);
-    const Motion m = {.dt_s = 0.05, .n = SHAKES, .accel = accel};
+    const Motion m = make_pair(&f, core, &o);
     const SimResult loose = run_system(SCENE_LINKS, &f, core, (LinearDevice){.link_ns_m = 0}, &m);
     lay_out_tmd(&p, &f, 1e-9, (LinearDevice){.tmd_hz = 1, .tmd_damping = 0.1});
     integrate(&p, N, &m, 200, J);
@@ -393,30 +379,21 @@ TEST(rigidly_connected_every_mode_of_both_has_the_damping_of_the_building)
 {
     enum { NN = N * N };
     SceneOptions o = paper_scene();
-    double accel[SHAKES], J[3], M[NN], phi[NN], omega[N];
+    double M[NN], phi[NN], omega[N];
     Frame f;
     Physical p = {.n = N};
     FREED CoreBeam *core = calloc(1, sizeof *core);
-    o.core.width_m = 1;
     o.core.damping = 0.2; /* has no say */
-    make_shaking(accel);
-    make_frame(&f, N, 4e7, 1e5, 0.03);
-    make_core(core, &o, N);
+    const Motion m = make_pair(&f, core, &o);
     for (int i = 0; i < NN; i++) {
         p.K[i] = f.K[i] + core->K[i];
         M[i] = f.M[i] + core->M[i];
-        p.load[i / N] += M[i];
     }
     CHECK_OK(linalg_modes(N, p.K, M, omega, phi, &err), &err);
     modal_damping(N, 0, N, M, phi, omega, 0.03, p.C);
-    invert(N, M, p.M_inverse);
-    const Motion m = {.dt_s = 0.05, .n = SHAKES, .accel = accel};
-    integrate(&p, N, &m, 400, J);
+    lay_out_masses(&p, M);
     const SimResult r = run_system(SCENE_RIGID, &f, core, (LinearDevice){0}, &m);
-    assert_close(r.j1_m, J[0], 1e-6);
-    assert_close(r.j2_m, J[1], 1e-6);
-    assert_close(r.j3_g, J[2], 1e-5);
-    assert_less(r.energy_balance_error, 1e-7);
+    assert_as_integrated(&r, &p, &m);
     assert_true(r.damped_core_j > 0 && r.damped_building_j > r.damped_core_j);
 }
 
@@ -437,9 +414,7 @@ static void run_alone(const Problem *p, size_t r, SceneKind kind, const double x
 /* Of six floors or of twenty, elastic where yield_drift is 0. */
 static void open_tower(Problem *p, int floors, const char *records, Robust robust, long threads, double yield_drift)
 {
-    Settings s;
-    char text[200];
-    paper_defaults(&s);
+    Settings s = paper_settings();
     s.sim.duration_s = 25;
     if (floors == 6) {
         six_floors(&s.building, &s.core);
@@ -449,8 +424,7 @@ static void open_tower(Problem *p, int floors, const char *records, Robust robus
     s.building.yield_drift = yield_drift;
     s.sim.robust = robust;
     s.search.threads = threads;
-    snprintf(text, sizeof text, "motion.records=%s", records);
-    CHECK_OK(settings_set(&s, text, &err), &err);
+    CHECK_OK(settings_set(&s, brief("motion.records=%s", records), &err), &err);
     CHECK_OK(tower_open(p, &s, TOWER_AS_SET, SIZE_MAX, &err), &err);
 }
 

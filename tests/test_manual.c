@@ -17,27 +17,21 @@ static int has_entry(const char *page, const char *name)
 
 TEST(every_command_has_a_page_with_the_sections_of_man_and_all_its_options)
 {
-    static const char *const SECTIONS[] = {"NAME", "SYNOPSIS", "DESCRIPTION", "OPTIONS", "EXIT STATUS", "EXAMPLES"};
     for (int i = 0; command_at(i); i++) {
         const Command *c = command_at(i);
         char *page = output_of("--man %s", c->name), *at = page;
         assert_int_equal(strncmp(page, ".TH imtet\\-", 11), 0);
         assert_int_equal(strspn(strstr(page, " 1 \"") + 4, "0123456789-"), 10); /* a date */
-        for (size_t k = 0; k < N_OF(SECTIONS); k++) {
-            char title[32];
-            snprintf(title, sizeof title, "\n.SH %s\n", SECTIONS[k]);
-            at = strstr(at, title);
+        FOR_EACH (const char *, section, "NAME", "SYNOPSIS", "DESCRIPTION", "OPTIONS", "EXIT STATUS", "EXAMPLES") {
+            at = strstr(at, brief("\n.SH %s\n", *section));
             if (!at)
-                fail_msg("%s: no section %s", c->name, SECTIONS[k]);
+                fail_msg("%s: no section %s", c->name, *section);
         }
         for (const ArgOption *o = c->options; o->name; o++)
             if (!has_entry(page, o->name))
                 fail_msg("%s is not in the page of %s", o->name, c->name);
-        for (Status s = 0; s < STATUS_COUNT; s++) {
-            char code[8];
-            snprintf(code, sizeof code, "%d", status_exit_code(s));
-            assert_true(has_entry(page, code));
-        }
+        for (Status s = 0; s < STATUS_COUNT; s++)
+            assert_true(has_entry(page, brief("%d", status_exit_code(s))));
         free(page);
     }
     FREED char *all = output_of("--man");
@@ -61,13 +55,11 @@ TEST(help_of_a_command_is_the_same_both_ways)
 TEST(the_version_says_what_the_program_was_built_from)
 {
     json_auto_t *o = json_of("--version --json");
-    char *line = output_of("--version"), wanted[128];
-    snprintf(wanted, sizeof wanted, "imtet %s (%s)\n", json_string_value(json_object_get(o, "version")),
-             json_string_value(json_object_get(o, "revision")));
-    assert_string_equal(line, wanted);
+    FREED char *line = output_of("--version");
+    assert_string_equal(line, brief("imtet %s (%s)\n", json_string_value(json_object_get(o, "version")),
+                                    json_string_value(json_object_get(o, "revision"))));
     assert_non_null(json_string_value(json_object_get(json_object_get(o, "libraries"), "sundials")));
     assert_true(isalpha((unsigned char)json_string_value(json_object_get(o, "compiler"))[0]));
-    free(line);
     expect(2, "nothing but --json", "--version --jsn");
     expect(2, "did you mean --version?", "--versoin");
     assert_same_output("--version --json", "--json --version");
@@ -75,24 +67,22 @@ TEST(the_version_says_what_the_program_was_built_from)
 
 static char *shell(const char *format, ...)
 {
-    char command[2048], path[128];
+    char command[2048];
     va_list list;
     va_start(list, format);
     const size_t n = (size_t)snprintf(command, sizeof command, "exec >%s/offered; ", place.folder);
     spread(command + n, sizeof command - n, format, list);
     va_end(list);
     assert_int_equal(system(command), 0);
-    snprintf(path, sizeof path, "%s/offered", place.folder);
-    return text_of(path);
+    return text_of(there("offered"));
 }
 
 /* Bash replaces what is behind the last = or :. */
 static void expect_offer(const char *words, const char *wanted)
 {
-    FREED char *offer =
-        shell("bash -c 'source scripts/completion.bash; COMP_LINE=\"%s %s\"; COMP_POINT=${#COMP_LINE}; _imtet; "
-              "echo \"${COMPREPLY[*]}\"'",
-              getenv("IMTET"), words);
+    FREED char *offer = shell("bash -c 'source scripts/completion.bash; COMP_LINE=\"%s %s\"; COMP_POINT=${#COMP_LINE}; "
+                              "_imtet; echo \"${COMPREPLY[*]}\"'",
+                              getenv("IMTET"), words);
     if (strncmp(offer, wanted, strlen(wanted)) != 0)
         fail_msg("imtet %s: offered '%s', wanted '%s'", words, offer, wanted);
 }
@@ -120,9 +110,8 @@ TEST(bash_offers_commands_options_keys_and_words)
 /* Skipped where the shell is not on this machine, and for a program that is not to be installed. */
 static void install_for(const char *name)
 {
-    char *found = shell("which %s || true", name);
+    FREED char *found = shell("which %s || true", name);
     const int is_there = found[0] != 0;
-    free(found);
     if (!is_there || access("build/release/libimtet.so", F_OK) != 0 || strstr(getenv("IMTET"), "/build/"))
         skip();
     free(shell("make -s -o imtet install PREFIX=@/opt"));
@@ -166,17 +155,13 @@ TEST(what_is_installed_is_gone_again)
 /* Every row of the table in the documentation is a status of the program and the other way round. */
 TEST(the_exit_codes_are_those_of_the_documentation)
 {
-    char row[16], *page = text_of("docs/exit-codes.md");
+    FREED char *page = text_of("docs/exit-codes.md");
     int n_rows = 0;
     for (const char *at = page; (at = strstr(at, "\n| ")); at++)
         n_rows += isdigit((unsigned char)at[3]) != 0;
-    for (int s = 0; s < STATUS_COUNT; s++) {
-        snprintf(row, sizeof row, "\n| %d | ", status_exit_code((Status)s));
-        if (!strstr(page, row))
-            fail_msg("docs/exit-codes.md does not know %d", status_exit_code((Status)s));
-    }
+    for (int s = 0; s < STATUS_COUNT; s++)
+        assert_words(page, brief("\n| %d | ", status_exit_code((Status)s)));
     assert_int_equal(n_rows, STATUS_COUNT);
-    free(page);
 }
 
 SUITE(make_place, clear_place)

@@ -1,17 +1,14 @@
 /* The model that a study chooses (sim.model = auto): against simulations of what is meant, effects of which the answer
  * is known beforehand, what the settings give, what it may cost, and a run that keeps what it has chosen. */
 #include "runs.h"
+#include "towers.h"
 
 #include "analysis/model_choice.h"
-#include "settings/settings.h"
-#include "study/study.h"
 
 static int make_buildings(void **state)
 {
-    char *folder;
-    if (make_place(state) != 0 || mkdir(folder = in_place("six"), 0777) != 0)
+    if (make_place(state) != 0)
         return -1;
-    free(folder);
     write_in_place("six/storeys.csv", "height_m,mass_t,stiffness_kn_m\n3.6,390,354344\n3.6,390,318910\n3.6,390,283475\n"
                                       "3.6,390,248041\n3.6,390,212606\n3.6,390,177172\n");
     write_in_place("s.ini", "[building]\nmodel = six\n[core]\nwidth_m = 4\n[design]\ngap_m = 0.001, 0.13\n"
@@ -23,10 +20,8 @@ static int make_buildings(void **state)
 
 static Settings scene_of(const char *const sets[])
 {
-    Settings s;
-    FREED char *path = in_place("s.ini");
-    settings_defaults(&s);
-    CHECK_OK(settings_read(&s, path, NULL, NULL, &err), &err);
+    Settings s = default_settings();
+    CHECK_OK(settings_read(&s, there("s.ini"), NULL, NULL, &err), &err);
     for (; *sets; sets++)
         CHECK_OK(settings_set(&s, *sets, &err), &err);
     return s;
@@ -55,10 +50,7 @@ static const LadderEffect *effect(const ModelChoice *c, const char *key)
 
 static Measured simulated(const Settings *s, SceneKind kind, const double x[])
 {
-    OWNED(problem_close) Problem p;
-    SimResult r;
-    CHECK_OK(tower_open(&p, s, TOWER_SINGLE, 1, &err), &err);
-    CHECK_OK(tower_simulate(&p, 1, &(SimTask){.kind = kind, .x = x}, &r, &err), &err);
+    const SimResult r = simulated_as(kind, s, x);
     return measured(&r);
 }
 
@@ -150,30 +142,24 @@ TEST(the_end_of_the_record_is_open_where_only_peaks_are_searched_for)
     peaks.sim.duration_s = 0;
     shares = peaks;
     CHECK_OK(settings_set(&shares, "search.objectives=j1_m, ed1_pct", &err), &err);
-    ModelChoice *c = chosen(&peaks);
-    assert_false(effect(c, "sim.duration_s")->is_set);
-    free(c);
-    c = chosen(&shares);
-    assert_true(effect(c, "sim.duration_s")->is_set && shares.sim.duration_s == 0);
-    free(c);
+    FREED ModelChoice *open = chosen(&peaks), *set = chosen(&shares);
+    assert_false(effect(open, "sim.duration_s")->is_set);
+    assert_true(effect(set, "sim.duration_s")->is_set && shares.sim.duration_s == 0);
 }
 
 TEST(it_costs_60_simulations_or_3_percent_and_sees_every_record_that_it_can)
 {
     Settings few = scene_of((const char *const[]){"motion.records=builtin:suite", "sim.duration_s=4", NULL});
-    ModelChoice *c = chosen(&few);
-    assert_int_equal(c->n_records, 23);
-    assert_true(c->n_simulations <= 60 && c->n_cases < 23);
-    free(c);
+    FREED ModelChoice *a = chosen(&few);
+    assert_int_equal(a->n_records, 23);
+    assert_true(a->n_simulations <= 60 && a->n_cases < 23);
     Settings three = scene_of((const char *const[]){"motion.records=builtin:kobe-like, builtin:sylmar-like", NULL});
-    c = chosen(&three);
-    assert_true(c->n_records == 3 && c->n_cases >= 3 && c->n_simulations <= 60);
-    free(c);
+    FREED ModelChoice *b = chosen(&three);
+    assert_true(b->n_records == 3 && b->n_cases >= 3 && b->n_simulations <= 60);
     Settings many = scene_of((const char *const[]){"motion.records=builtin:kobe-like, builtin:sylmar-like",
                                                    "search.max_evals=4000", "sim.duration_s=3", NULL});
-    c = chosen(&many);
+    FREED ModelChoice *c = chosen(&many);
     assert_true(c->n_cases == 9 && c->n_simulations <= 360);
-    free(c);
 }
 
 TEST(any_number_of_threads_chooses_the_same)
@@ -190,21 +176,9 @@ TEST(any_number_of_threads_chooses_the_same)
 
 static json_t *model_of(const char *run)
 {
-    char name[64];
-    snprintf(name, sizeof name, "%s/provenance.json", run);
-    FREED char *text = read_in_place(name);
-    json_t *all = json_loads(text, 0, NULL), *model = json_incref(json_object_get(all, "model"));
-    json_decref(all);
-    return model;
-}
-
-/* Lets `left` questions pass, then stops. */
-static int stop_after(void *user)
-{
-    int left;
-#pragma omp atomic capture
-    left = --*(int *)user;
-    return left < 0;
+    FREED char *text = read_in_place(brief("%s/provenance.json", run));
+    json_auto_t *all = json_loads(text, 0, NULL);
+    return json_incref(json_object_get(all, "model"));
 }
 
 TEST(a_run_keeps_what_it_has_chosen_and_what_goes_on_is_the_run_that_never_stopped)
@@ -212,8 +186,7 @@ TEST(a_run_keeps_what_it_has_chosen_and_what_goes_on_is_the_run_that_never_stopp
     Settings s = scene_of((const char *const[]){NULL});
     StudySummary summary;
     Status status = STATUS_STOPPED;
-    FREED char *folder = in_place("parts");
-    snprintf(s.run.out, sizeof s.run.out, "%s", folder);
+    snprintf(s.run.out, sizeof s.run.out, "%s", there("parts"));
     assert_refused(study_run(&s, &(StudyOptions){.stop = stop_after, .user = &(int){3}}, &summary, NULL, &err),
                    STATUS_STOPPED, "stopped before its model was chosen; nothing is stored");
     for (int k = 100; status == STATUS_STOPPED; k += 20)
@@ -222,12 +195,11 @@ TEST(a_run_keeps_what_it_has_chosen_and_what_goes_on_is_the_run_that_never_stopp
     free(output_of("optimize @/s.ini --out @/whole"));
     FREED char *a = all_of("whole"), *b = all_of("parts");
     assert_string_equal(a, b);
-    json_t *model = model_of("whole"), *confirmed = json_object_get(model, "confirmed");
-    assert_less(0, json_array_size(json_object_get(confirmed, "designs")));
+    json_auto_t *model = model_of("whole");
+    assert_less(0, json_array_size(json_object_get(json_object_get(model, "confirmed"), "designs")));
     OWNED(run_free) Run run = run_in("whole");
     assert_string_equal(run.settings->core.foundation,
                         json_string_value(json_object_get(json_object_get(model, "settings"), "core.foundation")));
-    json_decref(model);
     expect(65, "building.p_delta is",
            "optimize @/s.ini --out @/whole --set building.p_delta=off --set core.theory=euler_bernoulli");
     expect(65, "sim.model: auto in the run, now given", "optimize @/s.ini --out @/whole --set sim.model=given");
@@ -257,12 +229,8 @@ TEST(where_a_named_design_needs_more_both_values_and_the_command_are_said)
 
 static Settings begun(const char *folder)
 {
-    Settings s;
-    char name[64];
-    snprintf(name, sizeof name, "%s/study.ini", folder);
-    FREED char *path = in_place(name);
-    settings_defaults(&s);
-    CHECK_OK(settings_read(&s, path, NULL, NULL, &err), &err);
+    Settings s = default_settings();
+    CHECK_OK(settings_read(&s, there(brief("%s/study.ini", folder)), NULL, NULL, &err), &err);
     return s;
 }
 
@@ -287,11 +255,10 @@ TEST(a_preset_has_the_box_of_its_building_and_what_options_say_comes_before_it)
 
 TEST(every_preset_is_a_study_that_checks)
 {
-    static const char *const NAMES[] = {"stops", "devices", "engineer", "risk"};
-    for (size_t i = 0; i < N_OF(NAMES); i++) {
-        free(output_of("new @/of-%s --preset %s --set building.model=@/six --set building.yield_drift=0.01", NAMES[i],
-                       NAMES[i]));
-        free(output_of("check @/of-%s/study.ini", NAMES[i]));
+    FOR_EACH (const char *, name, "stops", "devices", "engineer", "risk") {
+        free(output_of("new @/of-%s --preset %s --set building.model=@/six --set building.yield_drift=0.01", *name,
+                       *name));
+        free(output_of("check @/of-%s/study.ini", *name));
     }
 }
 
@@ -304,10 +271,9 @@ static void is_same(const char *key, unsigned flags, const char *was, const char
 
 TEST(the_paper_s_preset_is_configs_kobe_ini)
 {
-    Settings kobe;
+    Settings kobe = default_settings();
     free(output_of("new @/paper --preset paper"));
     const Settings s = begun("paper");
-    settings_defaults(&kobe);
     CHECK_OK(settings_read(&kobe, "configs/kobe.ini", NULL, NULL, &err), &err);
     settings_compare(&kobe, &s, is_same, NULL);
 }
@@ -317,8 +283,7 @@ TEST(files_that_are_not_there_and_presets_that_are_none_begin_nothing)
     expect(66, "motion.record: RECORD.AT2: there is no such file", "new @/no --record RECORD.AT2");
     expect(66, "building.model: ", "new @/no --preset devices --set building.model=@/none");
     expect(2, "--preset: device is no preset; did you mean devices?", "new @/no --preset device");
-    FREED char *path = in_place("no");
-    assert_int_equal(access(path, F_OK), -1);
+    assert_int_equal(access(there("no"), F_OK), -1);
     free(output_of("new @/plain"));
     const Settings s = begun("plain");
     assert_int_equal(s.sim.model, MODEL_AUTO);

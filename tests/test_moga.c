@@ -142,6 +142,21 @@ TEST(the_estimate_is_within_four_standard_errors_of_the_exact_hypervolume)
 
 /* -- directions ---------------------------------------------------------------------------------------------------- */
 
+static Directions lattice(size_t n_obj, size_t outer, size_t inner)
+{
+    Directions d;
+    CHECK_OK(directions_create(&d, n_obj, outer, inner, &err), &err);
+    return d;
+}
+
+/* As many of them as a population has members. */
+static Directions lattice_for(size_t n_obj, size_t population)
+{
+    size_t outer, inner;
+    directions_choose(n_obj, population, &outer, &inner);
+    return lattice(n_obj, outer, inner);
+}
+
 TEST(reference_directions_are_as_many_as_binomials_say_and_lie_on_the_simplex)
 {
     const struct {
@@ -149,8 +164,7 @@ TEST(reference_directions_are_as_many_as_binomials_say_and_lie_on_the_simplex)
     } cases[] = {{2, 4, 0, 5}, {3, 12, 0, 91}, {7, 3, 1, 84 + 7}, {8, 3, 2, 120 + 36}, {1, 1, 0, 1}};
     for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++) {
         const size_t m = cases[c].m;
-        OWNED(directions_free) Directions d;
-        CHECK_OK(directions_create(&d, m, cases[c].outer, cases[c].inner, &err), &err);
+        OWNED(directions_free) Directions d = lattice(m, cases[c].outer, cases[c].inner);
         assert_int_equal(d.n, cases[c].n);
         for (size_t i = 0; i < d.n; i++) {
             double sum = 0.0;
@@ -165,14 +179,6 @@ TEST(reference_directions_are_as_many_as_binomials_say_and_lie_on_the_simplex)
     }
 }
 
-static size_t n_directions(size_t n_obj, size_t outer, size_t inner)
-{
-    Directions d;
-    CHECK_OK(directions_create(&d, n_obj, outer, inner, &err), &err);
-    directions_free(&d);
-    return d.n;
-}
-
 TEST(directions_fill_the_population_asked_for)
 {
     const size_t objectives[] = {2, 3, 5, 7, 10}, populations[] = {20, 92, 300};
@@ -180,9 +186,10 @@ TEST(directions_fill_the_population_asked_for)
         for (size_t j = 0; j < 3; j++) {
             size_t outer, inner;
             directions_choose(objectives[i], populations[j], &outer, &inner);
-            const size_t n = n_directions(objectives[i], outer, inner);
-            assert_at_most(n, populations[j]);
-            assert_true(n >= objectives[i] && n_directions(objectives[i], outer + 1, 0) > populations[j]);
+            OWNED(directions_free) Directions d = lattice(objectives[i], outer, inner);
+            OWNED(directions_free) Directions next = lattice(objectives[i], outer + 1, 0);
+            assert_at_most(d.n, populations[j]);
+            assert_true(d.n >= objectives[i] && next.n > populations[j]);
         }
 }
 
@@ -267,11 +274,8 @@ TEST(selection_keeps_the_wanted_number_the_best_layers_and_the_corners_of_the_fr
     enum { N = 200, M = 3, KEEP = 40 };
     double F[N * M];
     size_t chosen[N], rank[N], scratch[3 * N];
-    size_t outer, inner;
-    OWNED(directions_free) Directions d;
+    OWNED(directions_free) Directions d = lattice_for(M, KEEP);
     FREED Selection *s;
-    directions_choose(M, KEEP, &outer, &inner);
-    CHECK_OK(directions_create(&d, M, outer, inner, &err), &err);
     CHECK_OK(selection_create(&s, N, &d, NULL, &err), &err);
     for (uint32_t seed = 0; seed < 50; seed++) {
         sphere_points(seed, N, M, F);
@@ -305,9 +309,8 @@ TEST(feasible_designs_survive_before_infeasible_ones)
     enum { N = 30, M = 2 };
     double F[N * M], violation[N];
     size_t chosen[N];
-    OWNED(directions_free) Directions d;
+    OWNED(directions_free) Directions d = lattice(M, 9, 0);
     FREED Selection *s;
-    CHECK_OK(directions_create(&d, M, 9, 0, &err), &err);
     CHECK_OK(selection_create(&s, N, &d, NULL, &err), &err);
     for (size_t i = 0; i < N; i++) { /* the infeasible ones would dominate */
         F[i * M] = (double)i;
@@ -326,29 +329,16 @@ TEST(thousands_of_designs_are_selected_in_seconds)
 {
     enum { M = 7, WANTED = 3000, N = 2 * WANTED };
     FREED double *F = calloc(N * M, sizeof *F);
-    size_t *selected = calloc(N, sizeof *selected), outer, inner;
-    OWNED(directions_free) Directions d;
+    FREED size_t *selected = calloc(N, sizeof *selected);
+    OWNED(directions_free) Directions d = lattice_for(M, WANTED);
     FREED Selection *s;
     Random r = random_stream(1, RANDOM_TEST, 0, 0);
     assert_true(F && selected);
-    for (size_t i = 0; i < N; i++) {
-        double square = 0.0;
-        for (size_t k = 0; k < M; k++) {
-            F[i * M + k] = fabs(random_normal(&r));
-            square += F[i * M + k] * F[i * M + k];
-        }
-        for (size_t k = 0; k < M; k++) /* none dominates another */
-            F[i * M + k] /= sqrt(square);
-    }
-    directions_choose(M, WANTED, &outer, &inner);
-    CHECK_OK(directions_create(&d, M, outer, inner, &err), &err);
+    sphere_points(1, N, M, F); /* none dominates another */
     CHECK_OK(selection_create(&s, N, &d, NULL, &err), &err);
     const clock_t begun = clock();
     assert_int_equal(selection_select(s, N, F, NULL, WANTED, &r, selected), WANTED);
-    const double seconds = (double)(clock() - begun) / CLOCKS_PER_SEC;
-    if (seconds > 5.0)
-        fail_msg("%.1f s", seconds);
-    free(selected);
+    assert_at_most((double)(clock() - begun) / CLOCKS_PER_SEC, 5.0);
 }
 
 /* -- archive and infill -------------------------------------------------------------------------------------------- */
@@ -448,9 +438,8 @@ TEST(a_batch_spreads_over_the_directions_instead_of_crowding)
     const double offered[] = {0.5, 0.5, 0.5, 0.5, 1.6, 0.1, 3, 3, 0, 0};
     const double violation[] = {0, 0, 0, 0, 1}, uncertainty[] = {0.1, 0.1, 0.1, 0.2, 0.3};
     unsigned char allowed[] = {1, 1, 1, 1, 1};
-    OWNED(directions_free) Directions d;
+    OWNED(directions_free) Directions d = lattice(2, 10, 0);
     FREED Infill *q;
-    CHECK_OK(directions_create(&d, 2, 10, 0, &err), &err);
     CHECK_OK(infill_create(&q, INFILL_PBI, 5, &d, NULL, &err), &err);
     infill_measure(q, 3, rows, front);
     assert_same_number(infill_distance(q, front), 0.0);
@@ -478,7 +467,7 @@ TEST(picks_are_those_of_gains_computed_anew_each_time)
     size_t rows[N], taken[2 * N];
     for (uint32_t seed = 0; seed < SEEDS; seed++) {
         unsigned char allowed[N], asked[N];
-        OWNED(directions_free) Directions d;
+        OWNED(directions_free) Directions d = lattice(M, 5, 0);
         FREED Infill *lazy, *anew;
         Random r = random_stream(seed, RANDOM_TEST, 1, 0);
         coarse_points(seed, N, M, F);
@@ -488,7 +477,6 @@ TEST(picks_are_those_of_gains_computed_anew_each_time)
             uncertainty[i] = (double)random_below(&r, 3);
             allowed[i] = random_below(&r, 8) > 0;
         }
-        CHECK_OK(directions_create(&d, M, 5, 0, &err), &err);
         CHECK_OK(infill_create(&lazy, (InfillKind)(seed % 2), N, &d, NULL, &err), &err);
         CHECK_OK(infill_create(&anew, (InfillKind)(seed % 2), N, &d, NULL, &err), &err);
         infill_measure(lazy, 5, rows, F);

@@ -47,24 +47,20 @@ static const char *launcher = "mpirun";
  * mpirun. */
 __attribute__((format(printf, 2, 3))) static pid_t launch(int ranks, const char *format, ...)
 {
-    char arguments[2048], command[4096];
+    char arguments[2048];
     va_list list;
     va_start(list, format);
     spread(arguments, sizeof arguments, format, list);
     va_end(list);
-    snprintf(command, sizeof command, "exec %s -n %d '%s' %s >'%s/said' 2>&1 </dev/null", launcher, ranks, program(),
-             arguments, place.folder);
-    return spawn(command);
+    return spawn(
+        brief("exec %s -n %d '%s' %s >'%s/said' 2>&1 </dev/null", launcher, ranks, program(), arguments, place.folder));
 }
 
 /* The ranks are mpirun's children, in their order; how many there are. */
 static int ranks_of(pid_t mpirun, long pid[16])
 {
-    char path[64];
     int n = 0;
-    snprintf(path, sizeof path, "/proc/%d/task/%d/children", (int)mpirun, (int)mpirun);
-    FILE *f = fopen(path, "r");
-    assert_non_null(f);
+    FILE *f = opened(brief("/proc/%d/task/%d/children", (int)mpirun, (int)mpirun), "r");
     while (n < 16 && fscanf(f, "%ld", &pid[n]) == 1)
         n++;
     fclose(f);
@@ -73,13 +69,12 @@ static int ranks_of(pid_t mpirun, long pid[16])
 
 static int have_ended(pid_t mpirun)
 {
-    char path[64], state;
+    char state;
     long pid[16];
     const int n = ranks_of(mpirun, pid);
     int n_ended = 0;
     for (int i = 0; i < n; i++) {
-        snprintf(path, sizeof path, "/proc/%ld/stat", pid[i]);
-        FILE *f = fopen(path, "r");
+        FILE *f = fopen(brief("/proc/%ld/stat", pid[i]), "r");
         n_ended += f && fscanf(f, "%*d (%*[^)]) %c", &state) == 1 && state == 'Z';
         if (f)
             fclose(f);
@@ -119,19 +114,12 @@ static void expect_code(pid_t pid, int wanted)
         fail_msg("exit %d, wanted %d: %s", code, wanted, said);
 }
 
-static void expect_said(const char *words)
-{
-    FREED char *said = read_in_place("said");
-    if (!strstr(said, words))
-        fail_msg("wanted: %s\nsaid: %s", words, said);
-}
-
-static void expect_not_said(const char *words)
-{
-    FREED char *said = read_in_place("said");
-    if (strstr(said, words))
-        fail_msg("said: %s", said);
-}
+/* Words that stand in what it has said, or behind a ! do not. */
+#define expect_said(...)                                                                                               \
+    do {                                                                                                               \
+        FREED char *all_said = read_in_place("said");                                                                  \
+        assert_words(all_said, __VA_ARGS__);                                                                           \
+    } while (0)
 
 static void assert_same_text(char *first, char *second, const char *a, const char *b, const char *what)
 {
@@ -143,9 +131,7 @@ static void assert_same_text(char *first, char *second, const char *a, const cha
 
 static char *front_of(const char *run)
 {
-    char name[64];
-    snprintf(name, sizeof name, "%s/front.csv", run);
-    return read_in_place(name);
+    return read_in_place(brief("%s/front.csv", run));
 }
 
 static void assert_same_evaluations(const char *a, const char *b)
@@ -161,18 +147,6 @@ static pid_t process_of(pid_t mpirun, int rank)
     return (pid_t)pid[rank];
 }
 
-static size_t lines_in(const char *name)
-{
-    FREED char *path = in_place(name);
-    size_t n = 0;
-    FILE *f = fopen(path, "r");
-    for (int c; f && (c = fgetc(f)) != EOF;)
-        n += c == '\n';
-    if (f)
-        fclose(f);
-    return n;
-}
-
 /* Until the run has a generation. */
 static void wait_for_evaluations(const char *run)
 {
@@ -185,12 +159,8 @@ static void wait_for_evaluations(const char *run)
 
 TEST(the_ordinary_program_does_not_link_mpi)
 {
-    char command[512];
-    snprintf(command, sizeof command, "ldd '%s' | grep -q libc && ! ldd '%s' | grep -qi libmpi", getenv("IMTET"),
-             getenv("IMTET"));
-    assert_int_equal(system(command), 0);
-    snprintf(command, sizeof command, "ldd '%s' | grep -qi libmpi", program());
-    assert_int_equal(system(command), 0);
+    expect_shell("ldd '%s' | grep -q libc && ! ldd '%s' | grep -qi libmpi", getenv("IMTET"), getenv("IMTET"));
+    expect_shell("ldd '%s' | grep -qi libmpi", program());
 }
 
 TEST(a_batch_has_the_same_bytes_at_any_number_of_ranks_and_threads)
@@ -201,80 +171,67 @@ TEST(a_batch_has_the_same_bytes_at_any_number_of_ranks_and_threads)
     write_in_place("tower.ini", TOWER);
     free(output_of("optimize @/tower.ini --out @/alone"));
     for (size_t i = 0; i < N_OF(RANKS) && RANKS[i] <= most; i++) {
-        char run_name[32];
-        snprintf(run_name, sizeof run_name, "on-%d", RANKS[i]);
+        FREED char *run_name = formatted("on-%d", RANKS[i]);
         expect_code(launch(RANKS[i], "optimize @/tower.ini --out @/%s --threads %zu", run_name, 2 - i % 2), 0);
         assert_same_evaluations("alone", run_name);
     }
 }
 
+/* A study by one process, with options of its own, of which it says the words, and over so many ranks. */
+static void expect_same_bytes(const char *name, const char *study, const char *options, const char *words, int ranks)
+{
+    program();
+    FREED char *ini = formatted("%s.ini", name), *over = formatted("%s-on-%d", name, ranks);
+    write_in_place(ini, study);
+    FREED char *said = output_of("optimize @/%s --out @/%s %s", ini, name, options);
+    assert_words(said, words);
+    expect_code(launch(ranks, "optimize @/%s --out @/%s", ini, over), 0);
+    assert_same_evaluations(name, over);
+}
+
 TEST(a_race_over_a_suite_has_the_same_bytes_at_any_number_of_ranks)
 {
-    static const int RANKS[] = {2, 4};
-    program();
-    write_in_place("race.ini", RACE);
-    free(output_of("optimize @/race.ini --out @/race"));
-    for (size_t i = 0; i < N_OF(RANKS); i++) {
-        char run_name[32];
-        snprintf(run_name, sizeof run_name, "race-on-%d", RANKS[i]);
-        expect_code(launch(RANKS[i], "optimize @/race.ini --out @/%s", run_name), 0);
-        assert_same_evaluations("race", run_name);
-    }
+    FOR_EACH (int, ranks, 2, 4)
+        expect_same_bytes("race", RACE, "", "", *ranks);
 }
 
 TEST(polishing_goes_over_the_ranks)
 {
-    program();
-    write_in_place("polish.ini",
-                   "[motion]\nrecord = builtin:kobe-like\npga_g = 0.3\n[sim]\nduration_s = 6\nreplicates = 4\n"
-                   "[search]\ninitial = 30\npopulation = 16\nmax_evals = 100\nsurrogate = off\n"
-                   "polish = 1\nthreads = 1\n");
-    expect_output("polished: ", "optimize @/polish.ini --out @/polished");
-    expect_code(launch(3, "optimize @/polish.ini --out @/polished-on-3"), 0);
-    assert_same_evaluations("polished", "polished-on-3");
+    expect_same_bytes("polished",
+                      "[motion]\nrecord = builtin:kobe-like\npga_g = 0.3\n[sim]\nduration_s = 6\nreplicates = 4\n"
+                      "[search]\ninitial = 30\npopulation = 16\nmax_evals = 100\nsurrogate = off\n"
+                      "polish = 1\nthreads = 1\n",
+                      "", "polished: ", 3);
 }
 
 TEST(an_external_simulator_runs_beside_every_rank)
 {
-    program();
-    write_in_place("steady.ini", STEADY);
-    free(output_of("optimize @/steady.ini --out @/steady --threads 3"));
-    expect_code(launch(4, "optimize @/steady.ini --out @/spread"), 0);
-    assert_same_evaluations("steady", "spread");
+    expect_same_bytes("steady", STEADY, "--threads 3", "", 4);
 }
 
 TEST(constraints_whole_numbers_and_words_have_the_same_bytes_over_ranks)
 {
-    program();
-    write_in_place("bounded.ini",
-                   "[problem]\nkind = external\ncommand = sh tests/worker.sh bounded\nvariables = 3\nobjectives = 2\n"
-                   "lower = 0\nupper = 20\nkinds = int, int, choice:a|b\n[search]\ninitial = 16\npopulation = 12\n"
-                   "max_evals = 60\nthreads = 1\n");
-    free(output_of("optimize @/bounded.ini --out @/bounded"));
-    expect_code(launch(3, "optimize @/bounded.ini --out @/bounded-on-3"), 0);
-    assert_same_evaluations("bounded", "bounded-on-3");
+    expect_same_bytes(
+        "bounded",
+        "[problem]\nkind = external\ncommand = sh tests/worker.sh bounded\nvariables = 3\nobjectives = 2\n"
+        "lower = 0\nupper = 20\nkinds = int, int, choice:a|b\n[search]\ninitial = 16\npopulation = 12\n"
+        "max_evals = 60\nthreads = 1\n",
+        "", "", 3);
 }
 
 TEST(devices_have_the_same_bytes_over_ranks)
 {
-    program();
-    write_in_place(
-        "devices.ini",
+    expect_same_bytes(
+        "devices",
         "[motion]\nrecord = builtin:kobe-like\npga_g = 0.3\n[sim]\nduration_s = 6\n[design]\nvariables = "
         "gaps, thickness, links, tuned_mass\ndevices = gap, link, none\ngap_zones = 2\nlink_zones = 2\n"
-        "device_zones = 2\n[search]\ninitial = 12\npopulation = 12\nmax_evals = 24\npolish = 0\nthreads = 1\n");
-    free(output_of("optimize @/devices.ini --out @/devices"));
-    expect_code(launch(3, "optimize @/devices.ini --out @/devices-on-3"), 0);
-    assert_same_evaluations("devices", "devices-on-3");
+        "device_zones = 2\n[search]\ninitial = 12\npopulation = 12\nmax_evals = 24\npolish = 0\nthreads = 1\n",
+        "", "", 3);
 }
 
 TEST(isolated_simulations_have_the_same_bytes_over_ranks)
 {
-    program();
-    write_in_place("isolated.ini", ISOLATED);
-    free(output_of("optimize @/isolated.ini --out @/isolated --set run.isolate=no"));
-    expect_code(launch(3, "optimize @/isolated.ini --out @/isolated-on-3"), 0);
-    assert_same_evaluations("isolated", "isolated-on-3");
+    expect_same_bytes("isolated", ISOLATED, "--set run.isolate=no", "", 3);
 }
 
 /* Three processes that simulate for ranks are shot while they run. */
@@ -302,34 +259,25 @@ TEST(other_commands_give_their_tasks_to_the_ranks)
     const char *variables = "gap_01_m,gap_02_m,gap_03_m,gap_04_m,gap_05_m,gap_06_m,gap_07_m,gap_08_m,gap_09_m,gap_10_m,"
                             "gap_11_m,gap_12_m,gap_13_m,gap_14_m,gap_15_m,gap_16_m,gap_17_m,gap_18_m,gap_19_m,gap_20_m,"
                             "t_base_m,t_top_m\n";
-    char designs[4096];
-    size_t n = (size_t)snprintf(designs, sizeof designs, "%s", variables);
+    char designs[4096] = "";
+    append(designs, "%s", variables);
     for (int i = 0; i < 6; i++)
         for (int j = 0; j < 22; j++)
-            n += (size_t)snprintf(designs + n, sizeof designs - n, "%g%c",
-                                  j < 20 ? 0.01 + 0.003 * ((i + j) % 7) : 0.02 - 0.005 * (j - 20), j < 21 ? ',' : '\n');
+            append(designs, "%g%c", j < 20 ? 0.01 + 0.003 * ((i + j) % 7) : 0.02 - 0.005 * (j - 20),
+                   j < 21 ? ',' : '\n');
     write_in_place("designs.csv", designs);
     write_in_place("tower.ini", TOWER);
-    char *alone = output_of(SIMULATE);
-    expect_code(launch(3, "%s", SIMULATE), 0);
-    char *said = read_in_place("said");
-    assert_string_equal(said, alone);
-    free(said);
-    free(alone);
     static const char EVALUATE[] = "evaluate @/alone --design knee --record builtin:kobe-like --record "
                                    "builtin:elcentro-like --replicates 3 --csv -";
     static const char IDA[] = "evaluate @/alone --design knee --pga 0.1:0.1:0.3 --csv -";
     static const char SLOPES[] = "simulate @/tower.ini --design @/alone:knee --replicates 2 --sensitivity --csv -";
-    const char *const commands[] = {EVALUATE, IDA, SLOPES};
-    if (lines_in("alone/front.csv") == 0)
+    if (finished_in("alone") == 0)
         free(output_of("optimize @/tower.ini --out @/alone"));
-    for (size_t i = 0; i < sizeof commands / sizeof commands[0]; i++) {
-        alone = output_of("%s", commands[i]);
-        expect_code(launch(3, "%s", commands[i]), 0);
-        said = read_in_place("said");
+    FOR_EACH (const char *, command, SIMULATE, EVALUATE, IDA, SLOPES) {
+        FREED char *alone = output_of("%s", *command);
+        expect_code(launch(3, "%s", *command), 0);
+        FREED char *said = read_in_place("said");
         assert_string_equal(said, alone);
-        free(said);
-        free(alone);
     }
 }
 
@@ -339,9 +287,7 @@ enum { MPIRUN = -1 };
 
 static void remove_run(const char *name)
 {
-    char command[256];
-    snprintf(command, sizeof command, "rm -rf '%s/%s'", place.folder, name);
-    assert_int_equal(system(command), 0);
+    expect_shell("rm -rf '%s/%s'", place.folder, name);
 }
 
 static void kill_and_resume(const char *study, int rank, int code)
@@ -357,9 +303,7 @@ static void kill_and_resume(const char *study, int rank, int code)
     assert_int_equal(code_of(mpirun), code);
     rest(rank == MPIRUN ? 2.0 : 0.0);
     assert_at_most(before, finished_in("killed"));
-    if (rank > 0)
-        expect_said("process rank 2");
-    expect_not_said("stopped on request");
+    expect_said("!stopped on request", rank > 0 ? "process rank 2" : "");
     expect_code(launch(3, "optimize @/killed"), 0);
     free(output_of("optimize @/killed.ini --out @/whole --threads 3"));
     assert_same_evaluations("whole", "killed");
@@ -425,9 +369,7 @@ TEST(a_rank_that_hangs_is_taken_for_dead_and_named)
     wait_for_evaluations("hangs");
     kill(process_of(mpirun, 1), SIGSTOP);
     expect_code(mpirun, 75);
-    expect_said("rank 1 on ");
-    expect_said("was taken for dead");
-    expect_said("Resume it with");
+    expect_said("rank 1 on ", "was taken for dead", "Resume it with");
 }
 
 TEST(a_simulator_that_does_not_answer_is_a_timeout_on_a_rank_that_lives)
@@ -438,10 +380,7 @@ TEST(a_simulator_that_does_not_answer_is_a_timeout_on_a_rank_that_lives)
                                "population = 12\nthreads = 1\n");
     expect_code(launch(4, "optimize @/deaf.ini --out @/deaf"), 0);
     FREED char *all = all_of("deaf");
-    int n = 0;
-    for (const char *at = all; (at = strstr(at, ",timeout,")); at++)
-        n++;
-    assert_int_equal(n, 4);
+    assert_int_equal(count(all, ",timeout,"), 4);
 }
 
 TEST(a_stop_passed_on_by_mpirun_ends_with_75_and_goes_on)
@@ -462,15 +401,9 @@ static pid_t child_of(pid_t parent)
 {
     const double until = now_s() + 10;
     while (now_s() < until) {
-        char path[64];
-        long pid;
-        snprintf(path, sizeof path, "/proc/%d/task/%d/children", (int)parent, (int)parent);
-        FILE *f = fopen(path, "r");
-        const int n = f ? fscanf(f, "%ld", &pid) : 0;
-        if (f)
-            fclose(f);
-        if (n == 1)
-            return (pid_t)pid;
+        long pid[16];
+        if (ranks_of(parent, pid) > 0)
+            return (pid_t)pid[0];
         rest(0.05);
     }
     fail_msg("process %d has no child", (int)parent);
@@ -499,64 +432,53 @@ TEST(under_imtet_mpirun_a_signal_and_a_killed_rank_end_with_75)
 TEST(another_program_or_record_on_a_rank_is_refused_by_name)
 {
     const char *other = getenv("IMTET_MPI_OTHER");
-    char command[2048];
     program();
     if (!other)
         skip();
-    snprintf(
-        command, sizeof command,
+    expect_shell(
         "cd '%s' && mkdir -p here there && seq 1 400 | awk '{ print 0.01 * $1 \",\" sin($1 / 9) }' > here/r.csv && "
         "awk -F, '{ print $1 \",\" (-$2) }' here/r.csv > there/r.csv",
         place.folder);
-    assert_int_equal(system(command), 0);
     write_in_place("tower.ini", TOWER);
-    snprintf(command, sizeof command,
-             "exec mpirun -n 2 '%s' optimize '%s/tower.ini' --out '%s/x' : -n 1 '%s' optimize x >'%s/said' 2>&1",
-             program(), place.folder, place.folder, other, place.folder);
-    expect_code(spawn(command), 65);
-    expect_said("rank 2 on ");
-    expect_said("all ranks must be one program");
-    snprintf(
-        command, sizeof command,
-        "set -- optimize '%s/tower.ini' --set motion.records=none --set motion.record=r.csv --set motion.unit=m_s2 "
-        "--out '%s/y'; exec mpirun -n 2 -wdir '%s/here' '%s' \"$@\" : -n 1 -wdir '%s/there' '%s' \"$@\" >'%s/said' "
-        "2>&1",
-        place.folder, place.folder, place.folder, program(), place.folder, program(), place.folder);
-    expect_code(spawn(command), 65);
-    expect_said("rank 2 on ");
-    expect_said("reads other files than rank 0");
-    snprintf(command, sizeof command,
-             "exec mpirun -n 2 '%s' optimize '%s/tower.ini' --out '%s/z' : -n 1 '%s' status '%s' >'%s/said' 2>&1",
-             program(), place.folder, place.folder, program(), place.folder, place.folder);
-    expect_code(spawn(command), 65);
+    const char *in = place.folder;
+    expect_code(spawn(brief("exec mpirun -n 2 '%s' optimize '%s/tower.ini' --out '%s/x' : "
+                            "-n 1 '%s' optimize x >'%s/said' 2>&1",
+                            program(), in, in, other, in)),
+                65);
+    expect_said("rank 2 on ", "all ranks must be one program");
+    expect_code(spawn(brief("set -- optimize '%s/tower.ini' --set motion.records=none --set motion.record=r.csv "
+                            "--set motion.unit=m_s2 --out '%s/y'; exec mpirun -n 2 -wdir '%s/here' '%s' \"$@\" : "
+                            "-n 1 -wdir '%s/there' '%s' \"$@\" >'%s/said' 2>&1",
+                            in, in, in, program(), in, program(), in)),
+                65);
+    expect_said("rank 2 on ", "reads other files than rank 0");
+    expect_code(spawn(brief("exec mpirun -n 2 '%s' optimize '%s/tower.ini' --out '%s/z' : "
+                            "-n 1 '%s' status '%s' >'%s/said' 2>&1",
+                            program(), in, in, program(), in, in)),
+                65);
     expect_said("has another command line than rank 0");
 }
 
 /* Rank 1 reads millions of samples, of which rank 0 knows nothing; without the stop it is refused for them. */
 TEST(a_stop_while_ranks_open_the_problem_ends_at_once)
 {
-    char command[2048], *said;
     int reads = 0;
     program();
     write_in_place("tower.ini", TOWER);
     write_in_place("said", "");
-    snprintf(
-        command, sizeof command,
+    expect_shell(
         "cd '%s' && mkdir -p long short && seq 1 2000000 | awk '{ print 0.01 * $1 \",\" sin($1 / 9) }' > long/r.csv && "
         "head -400 long/r.csv > short/r.csv",
         place.folder);
-    assert_int_equal(system(command), 0);
-    snprintf(command, sizeof command,
-             "set -- optimize '%s/tower.ini' --set motion.records=none --set motion.record=r.csv --set "
-             "motion.unit=m_s2 --out '%s/y'; "
-             "exec mpirun -n 1 -wdir '%s/short' '%s' \"$@\" : -n 1 -wdir '%s/long' '%s' \"$@\" >'%s/said' 2>&1",
-             place.folder, place.folder, place.folder, program(), place.folder, program(), place.folder);
-    const pid_t mpirun = spawn(command);
+    const pid_t mpirun =
+        spawn(brief("set -- optimize '%s/tower.ini' --set motion.records=none --set motion.record=r.csv --set "
+                    "motion.unit=m_s2 --out '%s/y'; "
+                    "exec mpirun -n 1 -wdir '%s/short' '%s' \"$@\" : -n 1 -wdir '%s/long' '%s' \"$@\" >'%s/said' 2>&1",
+                    place.folder, place.folder, place.folder, program(), place.folder, program(), place.folder));
     for (int i = 0; i < 1000 && !reads; i++) {
         rest(0.02);
-        said = read_in_place("said");
+        FREED char *said = read_in_place("said");
         reads = strstr(said, "r.csv: ") != NULL;
-        free(said);
     }
     kill(mpirun, SIGUSR1);
     expect_code(mpirun, 75);

@@ -1,7 +1,5 @@
 /* The designs that a study names: simulated until their error is known (study/named.h). */
-
 #include "runs.h"
-#include "study/study.h"
 
 #define STUDY                                                                                                          \
     "optimize configs/quick.ini " SIX_FLOORS "--threads 2 --set search.initial=30 --set search.population=16 "         \
@@ -64,16 +62,12 @@ TEST(a_design_of_a_run_is_simulated_by_the_steps_that_the_run_knows_it_by)
     OWNED(run_free) Run run = run_in("run");
     const Evaluation *e = run.finer.row;
     const double wanted = run_f(&run, run_find(&run, e->id))[2];
-    char words[300];
     assert_true(e->level > 0);
-    snprintf(words, sizeof words, "simulate @/run/settings.ini --json --design @/run:%ld", e->id);
-    json_t *o = json_of("%s", words);
-    assert_same_number(number(o, "j3_g"), wanted);
-    json_decref(o);
-    strcat(words, " --set sim.accuracy=coarse");
-    o = json_of("%s", words);
-    assert_true(number(o, "j3_g") != wanted);
-    json_decref(o);
+    for (int coarse = 0; coarse < 2; coarse++) {
+        json_auto_t *o = json_of("simulate @/run/settings.ini --json --design @/run:%ld %s", e->id,
+                                 coarse ? "--set sim.accuracy=coarse" : "");
+        assert_int_equal(number(o, "j3_g") == wanted, !coarse);
+    }
 }
 
 TEST(errors_are_columns_of_the_files_and_empty_where_they_are_not_known)
@@ -202,23 +196,12 @@ TEST(what_polishing_brings_to_the_front_is_known_where_it_is_named)
     assert_true(has_joined);
 }
 
-static int stop_after(void *user)
-{
-    int left;
-#pragma omp atomic capture
-    left = --*(int *)user;
-    return left < 0 ? SIGTERM : 0;
-}
-
 TEST(what_an_interrupted_study_names_is_known_too)
 {
     static const char SHORT[] = "[motion]\nrecord = builtin:kobe-like\npga_g = 0.3\n[sim]\nduration_s = 4\n"
                                 "[search]\ninitial = 20\npopulation = 12\nmax_evals = 60\nthreads = 2\n";
     const Settings s = settings_of(SHORT, "run-cut");
-    StudySummary summary;
-    int left = 40;
-    assert_int_equal(study_run(&s, &(StudyOptions){.stop = stop_after, .user = &left}, &summary, NULL, &err),
-                     STATUS_STOPPED);
+    study_stopped_after(40, &s);
     OWNED(run_free) Run run = run_in("run-cut");
     assert_non_null(run.table.row[run_knee(&run)].err);
     assert_non_null(run.table.row[run_best(&run, 0)].err);

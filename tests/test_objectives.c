@@ -110,13 +110,11 @@ TEST(every_file_and_command_follows_the_objectives_by_name)
 TEST(a_limit_on_a_further_result_decides_what_is_on_the_front)
 {
     OWNED(run_free) Run free_of, run;
-    char more[128];
     free_of = run_in("forces");
     double limit = 0.0;
     for (size_t i = 0; i < free_of.n_front; i++)
         limit += extra_of(&free_of, free_of.front[i], "contact_force_max_n") / (double)free_of.n_front;
-    snprintf(more, sizeof more, "--set 'search.limits=contact_force_max_n<=%.17g, drift_ratio<=0.9'", limit);
-    optimize("limited", more);
+    optimize("limited", brief("--set 'search.limits=contact_force_max_n<=%.17g, drift_ratio<=0.9'", limit));
     run = run_in("limited");
     size_t beyond = 0;
     for (size_t i = 0; i < run.table.n; i++) {

@@ -79,16 +79,14 @@ TEST(a_matrix_that_is_not_positive_definite_is_refused_without_lapack_at_the_sam
 
 TEST(a_scene_of_bytes_has_the_matrices_records_and_settings_of_the_files)
 {
-    static const char *const CHANGES[] = {"building.modes=4", "motion.records=builtin:elcentro-like",
-                                          "motion.stretch=1.5", "core.model=configs/neighbours/tower",
-                                          "contact.restitution=0.55"};
     static Settings s, again;
     static Portable p;
     FREED unsigned char *bytes;
     size_t n;
     settings_defaults(&s);
-    for (size_t i = 0; i < N_OF(CHANGES); i++)
-        CHECK_OK(settings_set(&s, CHANGES[i], &err), &err);
+    FOR_EACH (const char *, change, "building.modes=4", "motion.records=builtin:elcentro-like", "motion.stretch=1.5",
+              "core.model=configs/neighbours/tower", "contact.restitution=0.55")
+        CHECK_OK(settings_set(&s, *change, &err), &err);
     s.sim.steps_per_contact = 7;
     CHECK_OK(portable_make(&s, &bytes, &n, &err), &err);
     CHECK_OK(portable_read(&p, bytes, n, &err), &err);
@@ -143,11 +141,8 @@ TEST(a_scene_of_bytes_has_the_matrices_records_and_settings_of_the_files)
 /* n designs of so many floors; of the first three no gap closes. */
 static void write_designs(const char *name, int floors, int n)
 {
-    char path[1024];
     uint64_t x = 7;
-    snprintf(path, sizeof path, "%s/%s", place.folder, name);
-    FILE *f = fopen(path, "w");
-    assert_non_null(f);
+    FILE *f = opened(brief("%s/%s", place.folder, name), "w");
     for (int j = 0; j < floors; j++)
         fprintf(f, "gap_%02d_m,", j + 1);
     fputs("t_base_m,t_top_m\n", f);
@@ -162,16 +157,12 @@ static void write_designs(const char *name, int floors, int n)
 /* By the page of the run's report, and by the program. */
 static void expect_alike(const char *run)
 {
-    char command[1024];
     if (system("command -v node >/dev/null") != 0)
         skip();
-    snprintf(command, sizeof command, "report @/%s --out @/%s.html", run, run);
-    expect(0, "", command);
-    snprintf(command, sizeof command,
-             "d='%s/%s'; node tests/engine/forty.mjs '%s' $d.html $d.csv $d/settings.ini >$d.said 2>&1 || { "
-             "cat $d.said; exit 1; }; cat $d.said",
-             place.folder, run, getenv("IMTET"));
-    assert_int_equal(system(command), 0);
+    expect(0, "", brief("report @/%s --out @/%s.html", run, run));
+    expect_shell("d='%s/%s'; node tests/engine/forty.mjs '%s' $d.html $d.csv $d/settings.ini >$d.said 2>&1 || { "
+                 "cat $d.said; exit 1; }; cat $d.said",
+                 place.folder, run, getenv("IMTET"));
 }
 
 TEST(forty_designs_simulated_by_the_page_of_a_report_are_those_of_the_program)

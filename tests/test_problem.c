@@ -3,13 +3,11 @@
 #include <sys/resource.h>
 #include <sys/wait.h>
 
-#include "base/random.h"
 #include "check.h"
 #include "evaluate/external.h"
 #include "bench/textbook.h"
 #include "evaluate/schema.h"
 #include "evaluate/adapter.h"
-#include "settings/settings.h"
 
 enum { VAR = 22, OBJ = 7 };
 
@@ -53,8 +51,7 @@ static const Vector VECTORS[] = {
       7.298888070468685,  5.935212315647875,  20.554386975631907, 2.373748996799403, 22.34054617988378,
       0.7713598421070427, 18.8493251111285},
      {0.3384828961524231, 0.3407657250513603, 0.3524738196670899, 0.36209368618812454, 0.6799845675556181,
-      5.237854556103108, 13.107951046004702}},
-};
+      5.237854556103108, 13.107951046004702}}};
 
 static void check_vector(const char *problem, const double x[], const double f[])
 {
@@ -150,13 +147,12 @@ static void ask(Batch *a, const char *command, size_t workers, double timeout_s)
     OWNED(problem_close) Problem p;
     Queue *q;
     Finished done;
-    struct timespec start, end;
     Random r = random_stream(1, RANDOM_TEST, 0, 0);
     const ProblemOptions options = command_of(command, timeout_s, 3);
     for (size_t i = 0; i < N * 3; i++)
         a->X[i] = random_uniform(&r) - 0.5;
     CHECK_OK(external_open(&p, &options, workers, &err), &err);
-    clock_gettime(CLOCK_MONOTONIC, &start);
+    const double start = now_s();
     CHECK_OK(queue_open(&q, &p, &err), &err);
     for (size_t i = 0, came = 0; came < N; came++) {
         for (; i < N && i < came / (N / 2) * (N / 2) + N / 2; i++)
@@ -167,17 +163,22 @@ static void ask(Batch *a, const char *command, size_t workers, double timeout_s)
         memcpy(a->answers[came].reason, ((const ExternalAnswer *)done.parts)->reason, 160);
     }
     queue_close(q);
-    clock_gettime(CLOCK_MONOTONIC, &end);
-    a->seconds = (double)(end.tv_sec - start.tv_sec) + 1e-9 * (double)(end.tv_nsec - start.tv_nsec);
+    a->seconds = now_s() - start;
+}
+
+static void expect_each(Outcome wanted, const char *command, size_t workers, double timeout_s)
+{
+    Batch a;
+    ask(&a, command, workers, timeout_s);
+    for (size_t i = 0; i < N; i++)
+        assert_int_equal(a.answers[i].outcome, wanted);
 }
 
 static void expect_every_third(const char *mode, Outcome third, const char *reason, double timeout_s)
 {
-    char command[64];
-    snprintf(command, sizeof command, "sh tests/worker.sh %s", mode);
     for (size_t workers = 1; workers <= 3; workers += 2) {
         Batch a;
-        ask(&a, command, workers, timeout_s);
+        ask(&a, brief("sh tests/worker.sh %s", mode), workers, timeout_s);
         for (size_t i = 0; i < N; i++) {
             const Outcome want = (i + 1) % 3 == 0 ? third : OUTCOME_OK;
             if (a.answers[i].outcome != want)
@@ -236,12 +237,9 @@ TEST(a_worker_that_leaves_a_child_behind_is_seen_to_be_dead)
 TEST(millions_of_blank_lines_are_passed_over_quickly)
 {
     struct rusage before, after;
-    Batch a;
     getrusage(RUSAGE_SELF, &before);
-    ask(&a, "sh tests/worker.sh blanks", 1, 60);
+    expect_each(OUTCOME_OK, "sh tests/worker.sh blanks", 1, 60);
     getrusage(RUSAGE_SELF, &after);
-    for (size_t i = 0; i < N; i++)
-        assert_int_equal(a.answers[i].outcome, OUTCOME_OK);
     assert_less(after.ru_utime.tv_sec - before.ru_utime.tv_sec, 3);
 }
 
@@ -253,14 +251,12 @@ TEST(messages_are_cut_between_characters_and_shown_whatever_they_are)
     char want[160] = "a";
     for (int i = 0; i < 79; i++)
         strcat(want, "ä"); /* 159 bytes */
-    char text[256];
-    snprintf(text, sizeof text, "%sä", want);
-    evaluation_set_outcome(&e, OUTCOME_ERROR, text);
+    evaluation_set_outcome(&e, OUTCOME_ERROR, brief("%sä", want));
     assert_string_equal(e.reason, want);
     evaluation_set_outcome(&e, OUTCOME_ERROR, "zu gro\337, \303");
     assert_string_equal(e.reason, "zu gro\\xDF; \\xC3");
-    snprintf(text, sizeof text, "=%s", want); /* an apostrophe before it */
-    evaluation_set_outcome(&e, OUTCOME_ERROR, text);
+    /* an apostrophe before it */
+    evaluation_set_outcome(&e, OUTCOME_ERROR, brief("=%s", want));
     json_auto_t *string = json_string(e.reason);
     assert_non_null(string);
 }
@@ -285,24 +281,14 @@ TEST(answers_that_are_no_objectives_fail_the_design_alone)
 
 TEST(a_worker_that_never_behaves_fails_every_design_and_nothing_hangs)
 {
-    Batch a;
-    ask(&a, "sh tests/worker.sh unasked", 2, 5);
-    for (size_t i = 0; i < N; i++)
-        assert_int_equal(a.answers[i].outcome, OUTCOME_GARBLED);
-    ask(&a, "sh tests/worker.sh deaf", 3, 0.1);
-    for (size_t i = 0; i < N; i++)
-        assert_int_equal(a.answers[i].outcome, OUTCOME_TIMEOUT);
-    ask(&a, "true", 2, 5);
-    for (size_t i = 0; i < N; i++)
-        assert_int_equal(a.answers[i].outcome, OUTCOME_DEAD);
+    expect_each(OUTCOME_GARBLED, "sh tests/worker.sh unasked", 2, 5);
+    expect_each(OUTCOME_TIMEOUT, "sh tests/worker.sh deaf", 3, 0.1);
+    expect_each(OUTCOME_DEAD, "true", 2, 5);
 }
 
 TEST(words_of_the_command_may_be_quoted_and_no_shell_reads_them)
 {
-    Batch a;
-    ask(&a, "  sh  'tests/worker.sh' \"go\\\"od\" '$(exit)' a\\ b  ", 1, 20);
-    for (size_t i = 0; i < N; i++)
-        assert_int_equal(a.answers[i].outcome, OUTCOME_OK);
+    expect_each(OUTCOME_OK, "  sh  'tests/worker.sh' \"go\\\"od\" '$(exit)' a\\ b  ", 1, 20);
     Problem p;
     ProblemOptions options = command_of("sh 'tests", 1, 3);
     assert_refused(external_open(&p, &options, 1, &err), STATUS_BAD_DATA, "quote");
@@ -313,9 +299,8 @@ TEST(words_of_the_command_may_be_quoted_and_no_shell_reads_them)
 /* The first child of a process: the helper of one of its workers. */
 static pid_t helper_of(pid_t pid)
 {
-    char command[64], number[32] = "";
-    snprintf(command, sizeof command, "pgrep -P %d", (int)pid);
-    FILE *f = popen(command, "r");
+    char number[32] = "";
+    FILE *f = popen(brief("pgrep -P %d", (int)pid), "r");
     assert_true(f && fgets(number, sizeof number, f));
     pclose(f);
     return (pid_t)atol(number);
@@ -384,7 +369,7 @@ TEST(workers_end_with_a_program_whose_helper_was_killed_before)
     int end;
     const pid_t pid = start_with_workers(WITH_CHILDREN, &end);
     kill(helper_of(pid), SIGKILL);
-    nanosleep(&(struct timespec){1, 0}, NULL);
+    rest(1);
     kill_and_expect_its_workers_to_end(pid, end);
 }
 
@@ -405,19 +390,11 @@ TEST(a_command_that_does_not_exist_ends_the_search_by_name)
 
 static Settings external_settings(void)
 {
-    static const char *const SET[] = {"problem.kind=external",
-                                      "problem.command=sh tests/worker.sh good",
-                                      "problem.variables=3",
-                                      "problem.objectives=2",
-                                      "problem.lower=-1,0,2",
-                                      "problem.upper=3",
-                                      "problem.senses=max,min",
-                                      "problem.objective_names=profit, cost",
-                                      "search.limits=profit>=-0.5,cost <= 2"};
-    Settings s;
-    settings_defaults(&s);
-    for (size_t i = 0; i < sizeof SET / sizeof SET[0]; i++)
-        CHECK_OK(settings_set(&s, SET[i], &err), &err);
+    Settings s = default_settings();
+    FOR_EACH (const char *, set, "problem.kind=external", "problem.command=sh tests/worker.sh good",
+              "problem.variables=3", "problem.objectives=2", "problem.lower=-1,0,2", "problem.upper=3",
+              "problem.senses=max,min", "problem.objective_names=profit, cost", "search.limits=profit>=-0.5,cost <= 2")
+        CHECK_OK(settings_set(&s, *set, &err), &err);
     return s;
 }
 
@@ -471,12 +448,9 @@ TEST(an_external_problem_has_the_bounds_senses_names_and_limits_of_its_settings)
 static void refused(const char *assignment, const char *said)
 {
     Settings s = external_settings();
-    err = (Err){0};
     Adapter *adapter;
     CHECK_OK(settings_set(&s, assignment, &err), &err);
-    const Status status = adapter_open(&adapter, &s, &err);
-    if (status != STATUS_BAD_DATA || !strstr(err.text, said))
-        fail_msg("%s: status %d, said '%s', wanted '%s'", assignment, (int)status, err.text, said);
+    assert_refused(adapter_open(&adapter, &s, &err), STATUS_BAD_DATA, said);
 }
 
 TEST(lists_that_do_not_fit_are_refused_by_name)

@@ -3,17 +3,13 @@
 
 #include <sys/resource.h>
 
-#include "base/units.h"
 #include "motion/motion_scale.h"
 #include "motion/motion.h"
 #include "motion/spectrum.h"
-#include "settings/settings.h"
 
 static MotionOptions options(void)
 {
-    Settings s;
-    settings_defaults(&s);
-    return s.motion;
+    return default_settings().motion;
 }
 
 static Motion motion_of(size_t n, double dt, double (*a)(double t))
@@ -110,7 +106,8 @@ TEST(a_high_pass_brings_the_ground_to_rest_where_it_was)
         motion_figures(&m, &before);
         CHECK_OK(motion_process(&m, &o, &err), &err);
         motion_figures(&m, &after);
-        double *v = malloc(3 * m.n * sizeof *v), *d = v + m.n, *husid = d + m.n;
+        FREED double *v = malloc(3 * m.n * sizeof *v);
+        double *d = v + m.n, *husid = d + m.n;
         motion_histories(&m, v, d, husid);
         const size_t pad = (size_t)ceil(3 / hz / 0.01);
         assert_int_equal(m.n, 3001 + 2 * pad);
@@ -119,8 +116,7 @@ TEST(a_high_pass_brings_the_ground_to_rest_where_it_was)
         assert_less(fabs(v[m.n - 1]), 1e-3 * after.pgv_m_s);
         assert_less(fabs(d[m.n - 1]), 3e-4 * before.pgd_m);
         assert_close(after.pga_m_s2, before.pga_m_s2, 0.02); /* 2 Hz is let pass */
-        assert_non_null(strstr(m.processed, "zeros added at both ends"));
-        free(v);
+        assert_words(m.processed, "zeros added at both ends");
     }
 }
 
@@ -252,9 +248,7 @@ TEST(scalings_that_contradict_each_other_are_refused_and_named)
                                       "motion.target=asce7 sds=1 sd1=0.6"};
     for (int i = 0; i < 4; i++)
         for (int k = 0; k < 4; k++) {
-            err = (Err){0};
-            Settings s;
-            settings_defaults(&s);
+            Settings s = default_settings();
             CHECK_OK(settings_set(&s, SET[i], &err), &err);
             CHECK_OK(settings_set(&s, SET[k], &err), &err);
             const Status status = settings_check(&s, &err);
@@ -268,28 +262,16 @@ TEST(scalings_that_contradict_each_other_are_refused_and_named)
 
 TEST(settings_of_a_motion_that_make_no_sense_together_are_refused)
 {
-    static const char *const SET[] = {"motion.target=eurocode8 ag=0.3 soil=A from=3",
-                                      "motion.target=eurocode8 ag=0.3 soil=A tb=1",
-                                      "motion.target=eurocode8 ag=0.3 soil=A td=0.3",
-                                      "motion.target=asce7 sds=1 sd1=50",
-                                      "motion.target=eurocode8 ag=0.3",
-                                      "motion.target=eurocode8 soil=A",
-                                      "motion.target=eurocode8 ag=0.3 soil=F",
-                                      "motion.target=eurocode8 ag=0.3 soil=A sds=1",
-                                      "motion.target=asce7 sds=1",
-                                      "motion.target=asce7 sds=1 sd1=0.6 sds=2",
-                                      "motion.target=eurocode8 ag=0.3 soil=A ag=0.3",
-                                      "motion.target=eurocode9 ag=1",
-                                      "motion.target=asce7 sds=1x sd1=1",
-                                      "motion.target=none ag=1",
-                                      "motion.unit=counts",
-                                      "motion.unit=counts=0",
-                                      "motion.unit=g=2",
-                                      "motion.unit=feet"};
-    for (size_t i = 0; i < sizeof SET / sizeof SET[0]; i++) {
-        Settings s;
-        settings_defaults(&s);
-        CHECK_OK(settings_set(&s, SET[i], &err), &err);
+    FOR_EACH (const char *, set, "motion.target=eurocode8 ag=0.3 soil=A from=3",
+              "motion.target=eurocode8 ag=0.3 soil=A tb=1", "motion.target=eurocode8 ag=0.3 soil=A td=0.3",
+              "motion.target=asce7 sds=1 sd1=50", "motion.target=eurocode8 ag=0.3", "motion.target=eurocode8 soil=A",
+              "motion.target=eurocode8 ag=0.3 soil=F", "motion.target=eurocode8 ag=0.3 soil=A sds=1",
+              "motion.target=asce7 sds=1", "motion.target=asce7 sds=1 sd1=0.6 sds=2",
+              "motion.target=eurocode8 ag=0.3 soil=A ag=0.3", "motion.target=eurocode9 ag=1",
+              "motion.target=asce7 sds=1x sd1=1", "motion.target=none ag=1", "motion.unit=counts",
+              "motion.unit=counts=0", "motion.unit=g=2", "motion.unit=feet") {
+        Settings s = default_settings();
+        CHECK_OK(settings_set(&s, *set, &err), &err);
         assert_int_equal(settings_check(&s, &err), STATUS_BAD_DATA);
     }
     expect(65, "motion.highpass_hz: 5 must be below motion.lowpass_hz = 2",
@@ -315,9 +297,7 @@ TEST(the_figures_beside_processed_ones_are_those_of_the_record_at_the_same_scale
 TEST(the_histories_of_a_long_record_are_written_without_a_second_copy)
 {
     struct rusage used;
-    FREED char *path = in_place("long.csv");
-    FILE *f = fopen(path, "w");
-    assert_non_null(f);
+    FILE *f = opened(there("long.csv"), "w");
     fprintf(f, "# dt = 0.01 s, units: m/s2\n");
     for (int i = 0; i < 1000000; i++)
         fprintf(f, "%.6f\n", sin(i));
@@ -341,9 +321,8 @@ TEST(several_motions_are_shown_with_their_mean_and_the_target)
     if (has_browser()) {
         free(output_of("spectrum %s --set 'motion.target=eurocode8 ag=0.3 soil=B' --svg @/all.svg", ALL));
         FREED char *svg = read_in_place("all.svg");
-        static const char *const WORDS[] = {"kobe-like", "elcentro-like", "sylmar-like", "mean", "target", "</svg>"};
-        for (size_t i = 0; i < sizeof WORDS / sizeof WORDS[0]; i++)
-            assert_non_null(strstr(svg, WORDS[i]));
+        FOR_EACH (const char *, word, "kobe-like", "elcentro-like", "sylmar-like", "mean", "target", "</svg>")
+            assert_non_null(strstr(svg, *word));
     }
     expect(2, "--history takes one motion", "spectrum builtin:kobe-like builtin:sylmar-like --history -");
 }

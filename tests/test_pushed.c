@@ -1,19 +1,8 @@
 /* Forces on floors over time: closed forms of a single mass, a ground motion told as forces, files that are wrong. */
-
-#include "base/units.h"
 #include "bench/stability/bob.h"
 #include "motion/forces.h"
 #include "program.h"
 #include "one_scene.h"
-#include "sim/engine.h"
-
-/* A file of the test's folder; until the next call. */
-static const char *at(const char *name)
-{
-    static char path[512];
-    snprintf(path, sizeof path, "%s/%s", place.folder, name);
-    return path;
-}
 
 /* -- one mass ------------------------------------------------------------------------------------------------------ */
 
@@ -35,7 +24,7 @@ static SimResult push(Engine engine, ForceFn force, double duration, double gap)
                &(Contact){.k = 4.8650e10, .a = 0, .v0_floor = 1e-6});
     const EngineOptions o = {.duration = duration, .accuracy = ACCURACY_FINE};
     CHECK_OK(engine_entry(engine)->run(&model, &motion, &o, &r, &err), &err);
-    assert_int_equal(r.outcome, RUN_OK);
+    assert_ran(&r);
     assert_less(r.energy_balance_error, 1e-6);
     return r;
 }
@@ -102,9 +91,8 @@ static const double MASSES[] = {2.1e5, 1.9e5, 1.5e5};
 static SceneOptions three_storeys(Engine engine)
 {
     SceneOptions o = scene_defaults();
-    mkdir(at("three"), 0777);
     write_in_place("three/storeys.csv", STOREYS);
-    snprintf(o.building.model, sizeof o.building.model, "%s", at("three"));
+    snprintf(o.building.model, sizeof o.building.model, "%s", there("three"));
     o.sim.engine = engine;
     o.sim.accuracy = ACCURACY_FINE;
     return o;
@@ -125,10 +113,8 @@ TEST(a_ground_motion_told_as_forces_gives_the_same_displacements_and_energy)
     for (Engine e = 0; e < ENGINE_COUNT; e++) {
         const SceneOptions o = three_storeys(e);
         const SimResult a = simulate(&o, SCENE_NO_CORE, &motion, NULL), b = simulate(&o, SCENE_NO_CORE, &told, NULL);
-        assert_close(b.j1_m, a.j1_m, 1e-5);
-        assert_close(b.j2_m, a.j2_m, 1e-5);
-        assert_close(b.input_energy_j, a.input_energy_j, 1e-6);
-        assert_close(b.ed1_pct, a.ed1_pct, 1e-6);
+        assert_close_in(b, a, 1e-5, j1_m, j2_m);
+        assert_close_in(b, a, 1e-6, input_energy_j, ed1_pct);
         /* and half of each is the whole */
         for (size_t i = 0; i < motion.n; i++)
             motion.accel[i] *= 0.5;
@@ -155,7 +141,7 @@ static void blast_on_tower(Motion *m, const char *record)
     MotionOptions o = {.stretch = 1, .factor = 1, .unit = "from_file", .channel = "auto"};
     write_in_place("blast.csv", "time_s,floor_05_n,floor_06_n,floor_07_n\n0,3e7,4e7,2e7\n0.1,0,0,0\n12,0,0,0\n");
     snprintf(o.record, sizeof o.record, "%s", record);
-    snprintf(o.forces, sizeof o.forces, "%s", at("blast.csv"));
+    snprintf(o.forces, sizeof o.forces, "%s", there("blast.csv"));
     CHECK_OK(motion_open(m, &o, &err), &err);
     CHECK_OK(motion_scale(m, &o, &err), &err);
     assert_int_equal(m->n_force, 7);
@@ -220,8 +206,8 @@ TEST(histories_of_a_pushed_building_show_the_accelerations_that_the_peaks_are_of
     free(output_of("simulate configs/quick.ini --set motion.record=none --set motion.forces=@/f.csv --design none "
                    "--history @/h.csv --every 0.01 --csv @/r.csv"));
     OWNED(table_free) Table h, r;
-    CHECK_OK(table_read(&h, at("h.csv"), TABLE_HEADED, &err), &err);
-    CHECK_OK(table_read(&r, at("r.csv"), TABLE_WORDS, &err), &err);
+    CHECK_OK(table_read(&h, there("h.csv"), TABLE_HEADED, &err), &err);
+    CHECK_OK(table_read(&r, there("r.csv"), TABLE_WORDS, &err), &err);
     double most = 0, wanted;
     for (size_t i = 0; i < h.n_rows; i++)
         most = fmax(most, fabs(h.values[i * h.n_cols + (size_t)table_column(&h, "accel_20_g")]));

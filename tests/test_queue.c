@@ -4,7 +4,6 @@
 
 #include <stdatomic.h>
 
-#include "base/random.h"
 #include "evaluate/isolated.h"
 #include "evaluate/queue.h"
 
@@ -79,27 +78,25 @@ static double f_of(double x)
 }
 
 static Bench bench;
+static Finished done;
 
-static Queue *open_queue(size_t workers)
+/* Of a bench that has done nothing yet. */
+static Queue *open_queue(size_t workers, Observer observer)
 {
     Queue *q;
-    bench.problem.n_var = VAR;
-    bench.problem.n_obj = OBJ;
-    bench.problem.n_con = 1;
-    bench.problem.judge = judge;
-    bench.problem.simulator = &SIMULATOR;
-    bench.problem.self = &bench;
-    bench.problem.n_parts = PARTS;
-    bench.problem.part_size = sizeof(Part);
-    bench.problem.n_workers = workers;
+    bench = (Bench){.fault_at = {-1.0, -1.0}};
+    bench.problem = (Problem){.n_var = VAR,
+                              .n_obj = OBJ,
+                              .n_con = 1,
+                              .judge = judge,
+                              .simulator = &SIMULATOR,
+                              .self = &bench,
+                              .n_parts = PARTS,
+                              .part_size = sizeof(Part),
+                              .n_workers = workers,
+                              .observer = observer};
     CHECK_OK(queue_open(&q, &bench.problem, &err), &err);
     return q;
-}
-
-static void forget(void)
-{
-    memset(&bench, 0, sizeof bench);
-    bench.fault_at[0] = bench.fault_at[1] = -1.0;
 }
 
 static void ask(Queue *q, int n)
@@ -125,11 +122,8 @@ static Status note_done(const Evaluation *e, void *user, Err *why)
 TEST(a_batch_has_the_same_numbers_at_any_number_of_workers)
 {
     for (size_t workers = 1; workers <= WORKERS; workers++) {
-        Finished done;
-        forget();
+        Queue *q = open_queue(workers, (Observer){.done = note_done, .user = &bench});
         bench.rests = 1;
-        bench.problem.observer = (Observer){.done = note_done, .user = &bench};
-        Queue *q = open_queue(workers);
         ask(q, DESIGNS);
         assert_int_equal(queue_pending(q), DESIGNS);
         for (int i = 0; i < DESIGNS; i++) {
@@ -154,10 +148,8 @@ TEST(a_batch_has_the_same_numbers_at_any_number_of_workers)
 /* SQLite keeps -0 as 0 and what is not finite as nothing: a search that is resumed must not see other numbers. */
 TEST(numbers_are_those_that_a_run_keeps)
 {
-    Finished done;
     double x[VAR] = {-0.0, 2.0};
-    forget();
-    Queue *q = open_queue(1);
+    Queue *q = open_queue(1, (Observer){0});
     problem_repair(&bench.problem, x);
     assert_int_equal(signbit(x[0]), 0);
     CHECK_OK(queue_ask(q, &(Asked){.x = x}, &err), &err);
@@ -169,10 +161,8 @@ TEST(numbers_are_those_that_a_run_keeps)
 
 TEST(a_single_design_keeps_as_many_workers_busy_as_it_has_parts)
 {
-    Finished done;
-    forget();
+    Queue *q = open_queue(PARTS, (Observer){0});
     bench.rests = 1;
-    Queue *q = open_queue(PARTS);
     for (int tries = 0; tries < 200 && bench.most_under_way < PARTS; tries++) {
         ask(q, 1);
         CHECK_OK(queue_next(q, &done, &err), &err);
@@ -186,14 +176,12 @@ TEST(of_several_faults_the_first_design_is_named)
 {
     for (size_t workers = 1; workers <= WORKERS; workers++)
         for (int turn = 0; turn < 10; turn++) {
-            Finished done;
             err = (Err){0};
             Status status = STATUS_OK;
-            forget();
+            Queue *q = open_queue(workers, (Observer){0});
             bench.rests = turn % 2;
             bench.fault_at[0] = 20;
             bench.fault_at[1] = 21;
-            Queue *q = open_queue(workers);
             ask(q, DESIGNS);
             while (status == STATUS_OK)
                 status = queue_next(q, &done, &err);
@@ -213,13 +201,10 @@ static int some_more(void *user)
 TEST(a_stop_finishes_what_is_under_way_and_the_observer_hears_of_it)
 {
     for (size_t workers = 1; workers <= WORKERS; workers += WORKERS - 1) {
-        Finished done;
         Status status = STATUS_OK;
-        forget();
+        Queue *q = open_queue(workers, (Observer){some_more, note_done, &bench});
         bench.rests = 1;
         bench.tasks_left = 10 * PARTS;
-        bench.problem.observer = (Observer){some_more, note_done, &bench};
-        Queue *q = open_queue(workers);
         ask(q, DESIGNS);
         while (status == STATUS_OK)
             status = queue_next(q, &done, &err);
@@ -239,11 +224,8 @@ static Status refuse_third(const Evaluation *e, void *user, Err *why)
 
 TEST(a_fault_of_the_observer_ends_everything)
 {
-    Finished done;
     Status status = STATUS_OK;
-    forget();
-    bench.problem.observer = (Observer){.done = refuse_third, .user = &bench};
-    Queue *q = open_queue(2);
+    Queue *q = open_queue(2, (Observer){.done = refuse_third, .user = &bench});
     ask(q, DESIGNS);
     while (status == STATUS_OK)
         status = queue_next(q, &done, &err);
@@ -254,10 +236,8 @@ TEST(a_fault_of_the_observer_ends_everything)
 
 TEST(parts_come_back_in_any_order_and_designs_in_that_of_asking)
 {
-    Finished done;
     Task task[3 * PARTS];
-    forget();
-    Queue *q = open_queue(1);
+    Queue *q = open_queue(1, (Observer){0});
     ask(q, 3);
     for (int k = 0; k < 3 * PARTS; k++) {
         assert_int_equal(queue_take(q, 0, 0, 1, &task[k]), 1);
@@ -279,9 +259,7 @@ TEST(parts_come_back_in_any_order_and_designs_in_that_of_asking)
 
 TEST(designs_without_end_need_no_more_memory_than_those_pending)
 {
-    Finished done;
-    forget();
-    Queue *q = open_queue(3);
+    Queue *q = open_queue(3, (Observer){0});
     ask(q, 20);
     for (int i = 0; i < 3000; i++) {
         CHECK_OK(queue_next(q, &done, &err), &err);

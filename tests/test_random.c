@@ -1,4 +1,3 @@
-#include "base/random.h"
 #include "check.h"
 
 /* Random123's known answers for philox4x32-10: counter and key all zero, and digits of pi. The stream's counter is

@@ -1,4 +1,3 @@
-#include "base/random.h"
 #include "check.h"
 #include "rbf/model.h"
 #include "rbf/rbf.h"

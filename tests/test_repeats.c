@@ -1,8 +1,6 @@
 /* Runs whose answers are noisy: what their tables say, and that stopping them changes nothing. */
 #include "runs.h"
 
-#include "study/study.h"
-
 /* 60 simulations, of which (60 - 18 * 2) / 2 are repeats. */
 #define PROBLEM(noise, noisy)                                                                                          \
     "[problem]\nkind = external\ncommand = " TEXTBOOK_WORKER " dtlz2 2 2 " noise "\nvariables = 2\nobjectives = 2\n"   \
@@ -11,13 +9,6 @@
 static const char NOISY[] = PROBLEM("0.05", "yes"), QUIET[] = PROBLEM("0", "no");
 enum { SIMULATIONS = 60, REPEATS = 12 };
 
-/* Lets `left` questions pass, then stops. */
-static int stop_after(void *user)
-{
-    long *left = user;
-    return (*left)-- <= 0;
-}
-
 /* In pieces of so many questions; 0: in one. */
 static void study(const char *text, const char *out, long piece)
 {
@@ -25,7 +16,7 @@ static void study(const char *text, const char *out, long piece)
     Status status;
     StudySummary summary;
     do {
-        long left = piece;
+        int left = (int)piece;
         const StudyOptions options = {.stop = piece > 0 ? stop_after : NULL, .user = &left};
         status = study_run(&s, &options, &summary, NULL, &err);
     } while (status == STATUS_STOPPED);

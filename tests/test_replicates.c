@@ -1,8 +1,6 @@
 /* One rule for replicates: a study, `imtet simulate --replicates` and the summary of a tower agree to the last digit. */
-
 #include "runs.h"
 #include "scene_options.h"
-#include "base/stat.h"
 #include "sim/as_built.h"
 #include "evaluate/adapter.h"
 
@@ -10,18 +8,14 @@ enum { DESIGNS = 3, N_VAR = 22 };
 
 static Settings short_scene(const char *records, long replicates, const char *tolerance)
 {
-    Settings s;
-    char text[120];
-    paper_defaults(&s);
+    Settings s = paper_settings();
     s.sim.duration_s = 25.0; /* tiny changes have not grown yet, wide ones tell */
     s.sim.accuracy = ACCURACY_COARSE;
     s.sim.forces = FORCES_YES; /* every measure, those of the ground too */
     snprintf(s.core.foundation, sizeof s.core.foundation, "soil=C radius=10");
     s.sim.replicates = replicates;
-    snprintf(text, sizeof text, "motion.records=%s", records);
-    CHECK_OK(settings_set(&s, text, &err), &err);
-    snprintf(text, sizeof text, "sim.gap_tolerance_m=%s", tolerance);
-    CHECK_OK(settings_set(&s, text, &err), &err);
+    CHECK_OK(settings_set(&s, brief("motion.records=%s", records), &err), &err);
+    CHECK_OK(settings_set(&s, brief("sim.gap_tolerance_m=%s", tolerance), &err), &err);
     return s;
 }
 
@@ -37,23 +31,22 @@ typedef struct {
     ReplicateSummary sum[DESIGNS];
 } Replicated;
 
-static void run_designs(const Settings *settings, long threads, Replicated *out)
+static Replicated run_designs(Settings s, long threads)
 {
     double X[DESIGNS * N_VAR];
-    Settings s = *settings;
+    Replicated out = {0};
     OWNED(problem_close) Problem p;
     designs(X);
     s.search.threads = threads;
-    memset(out, 0, sizeof *out);
     CHECK_OK(tower_open(&p, &s, TOWER_AS_SET, SIZE_MAX, &err), &err);
-    CHECK_OK(tower_replicate(&p, DESIGNS, X, out->shown, out->sum, &err), &err);
+    CHECK_OK(tower_replicate(&p, DESIGNS, X, out.shown, out.sum, &err), &err);
+    return out;
 }
 
 TEST(one_replicate_under_one_record_is_the_simulation_itself)
 {
     const Settings s = short_scene("none", 1, "0");
-    Replicated out;
-    run_designs(&s, 1, &out);
+    const Replicated out = run_designs(s, 1);
     for (int i = 0; i < DESIGNS; i++)
         for (int k = 0; k < N_MEASURES; k++) {
             const double own = measure_value(&out.shown[i], k);
@@ -68,13 +61,10 @@ TEST(one_replicate_under_one_record_is_the_simulation_itself)
 TEST(of_several_records_the_worst_or_the_mean_counts)
 {
     Settings one = short_scene("none", 1, "0"), other = one, both = short_scene("builtin:sylmar-like", 1, "0");
-    Replicated a, b, worst, mean;
     snprintf(other.motion.record, sizeof other.motion.record, "builtin:sylmar-like");
-    run_designs(&one, 1, &a);
-    run_designs(&other, 1, &b);
-    run_designs(&both, 2, &worst);
+    const Replicated a = run_designs(one, 1), b = run_designs(other, 1), worst = run_designs(both, 2);
     both.sim.robust = ROBUST_MEAN;
-    run_designs(&both, 1, &mean);
+    const Replicated mean = run_designs(both, 1);
     for (int i = 0; i < DESIGNS; i++)
         for (int k = 0; k < PAPER_OBJECTIVES; k++) {
             const double x = a.sum[i].mean[k], y = b.sum[i].mean[k];
@@ -88,10 +78,7 @@ TEST(of_several_records_the_worst_or_the_mean_counts)
 TEST(replicates_with_gap_errors_have_mean_and_deviation)
 {
     const Settings tiny = short_scene("none", 4, "0"), wide = short_scene("none", 4, "0.01");
-    Replicated a, b, again;
-    run_designs(&tiny, 1, &a);
-    run_designs(&wide, 1, &b);
-    run_designs(&wide, 3, &again);
+    const Replicated a = run_designs(tiny, 1), b = run_designs(wide, 1), again = run_designs(wide, 3);
     for (int i = 0; i < DESIGNS; i++) {
         assert_true(a.sum[i].sd[0] >= 0.0 && b.sum[i].sd[0] > 0.0);
         assert_true(i < DESIGNS - 1 || b.sum[i].sd[0] > 100.0 * a.sum[i].sd[0]);
@@ -260,11 +247,10 @@ TEST(mean_plus_sd_is_that_of_the_single_simulations)
 {
     enum { REPLICATES = 4 };
     Settings s = short_scene("none", REPLICATES, "0.01");
-    Replicated out;
     double X[DESIGNS * N_VAR], v[REPLICATES], mean, sd;
     s.sim.uncertain.contact_stiffness = 0.5;
     s.sim.robust = ROBUST_MEAN_PLUS_SD;
-    run_designs(&s, 2, &out);
+    const Replicated out = run_designs(s, 2);
     designs(X);
     for (size_t k = 0; k < REPLICATES; k++) {
         Settings single = s;
@@ -288,15 +274,14 @@ TEST(mean_plus_sd_is_that_of_the_single_simulations)
 
 static void write_design(void)
 {
-    char text[1200];
+    char text[1200] = "";
     double X[DESIGNS * N_VAR];
-    int n = 0;
     designs(X);
     for (int j = 0; j < 20; j++)
-        n += sprintf(text + n, "gap_%02d_m,", j + 1);
-    n += sprintf(text + n, "t_base_m,t_top_m\n");
+        append(text, "gap_%02d_m,", j + 1);
+    append(text, "t_base_m,t_top_m\n");
     for (int j = 0; j < N_VAR; j++)
-        n += sprintf(text + n, "%.17g%c", X[j], j + 1 < N_VAR ? ',' : '\n');
+        append(text, "%.17g%c", X[j], j + 1 < N_VAR ? ',' : '\n');
     write_in_place("design.csv", text);
 }
 
@@ -305,13 +290,13 @@ static void simulated(const char *set, double mean[PAPER_OBJECTIVES], double sd[
 {
     FREED char *text =
         output_of("simulate configs/quick.ini --design @/design.csv --replicates 6 --json " SHORT "%s", set);
-    json_t *o = json_loads(text, 0, NULL), *e = json_object_get(o, "replicates");
+    json_auto_t *o = json_loads(text, 0, NULL);
+    const json_t *e = json_object_get(o, "replicates");
     assert_non_null(e);
     for (int k = 0; k < PAPER_OBJECTIVES; k++) {
         mean[k] = json_real_value(json_object_get(json_object_get(e, "mean"), measure(k)->name));
         sd[k] = json_real_value(json_object_get(json_object_get(e, "sd"), measure(k)->name));
     }
-    json_decref(o);
 }
 
 TEST(simulate_draws_the_replicates_of_a_study_and_knows_the_tolerance)

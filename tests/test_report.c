@@ -2,9 +2,6 @@
  * browser: test_browser.c. */
 #include "runs.h"
 
-#include "base/linalg.h"
-#include "base/random.h"
-#include "base/stat.h"
 #include "evaluate/replicates.h"
 #include "report/elsewhere.h"
 #include "report/importance.h"
@@ -14,32 +11,35 @@
 #include "report/words.h"
 #include "settings/options.h"
 
+/* A study of eight designs at a time. */
+#define SMALL_STUDY                                                                                                    \
+    "optimize configs/quick.ini " SIX_FLOORS "--set search.population=8 --set search.initial=8 --set "                 \
+    "search.polish=0 --set motion.stretch=0.5 "
+
 static const char MOTION[] = "0,0\n0.01,1\n0.02,-1\n0.03,0\n";
 static Run tower; /* read once for all tests, its knee simulated */
 static Report report;
 
 static int set_up(void **state)
 {
-    char path[PATH_MAX];
     const char *records[] = {"builtin:sylmar-like"};
     linalg_pin(); /* as the program does: other threads, other last digits, other impacts */
     if (make_place(state) != 0)
         return 1;
     expect(0, "",
            "optimize configs/quick.ini " SIX_FLOORS
-           "--max-evals 60 --set motion.stretch=0.5 --set sim.duration_s=4.505 --set search.population=16 "
-           "--set search.initial=40 --set building.yield_drift=0.001 --set 'core.foundation=soil=C radius=5 "
-           "anchors=inf' --set "
-           "search.objectives=j1_m,contact_force_max_n,j3_g,ed1_pct,edcs_pct,drift_ratio,mcore_kg --set "
-           "'search.limits=core_stress_pa<=1e10' --out @/tower");
+           "--max-evals 60 --set motion.stretch=0.5 --set sim.duration_s=4.505 "
+           "--set search.population=16 --set search.initial=40 --set building.yield_drift=0.001 "
+           "--set 'core.foundation=soil=C radius=5 anchors=inf' --set 'search.limits=core_stress_pa<=1e10' --set "
+           "search.objectives=j1_m,contact_force_max_n,j3_g,ed1_pct,edcs_pct,drift_ratio,mcore_kg --out @/tower");
     expect(0, "",
-           "optimize configs/quick.ini " DTLZ2(
-               5, 3) "--max-evals 90 --set search.population=16 --set search.initial=40 --out @/dtlz");
+           "optimize configs/quick.ini --max-evals 90 --set search.population=16 --set search.initial=40 "
+           "--out @/dtlz " DTLZ2(5, 3));
     write_in_place("own.csv", MOTION);
     write_in_place("twin.csv", MOTION);
     expect(0, "twin.csv has the content of ", "report @/tower --record @/own.csv --record @/twin.csv --unit m_s2");
     expect(0, "", "report @/dtlz");
-    CHECK_OK(run_read(&tower, path_of("tower", path), &err), &err);
+    CHECK_OK(run_read(&tower, there("tower"), &err), &err);
     const DetailOptions options = {.other = tower.settings, .n_records = 1, .records = records};
     CHECK_OK(report_open(&report, &tower, tower.n_front > 0 ? run_knee(&tower) : 0, &options, &err), &err);
     return 0;
@@ -153,23 +153,17 @@ static char *between(const char *text, const char *open, const char *close)
     return strndup(start, (size_t)(end - start));
 }
 
-static char *file_of(const char *run, const char *name)
-{
-    char path[128];
-    snprintf(path, sizeof path, "%s/%s", run, name);
-    return read_in_place(path);
-}
+#define file_of(run, name) read_in_place(brief("%s/%s", run, name))
 
 TEST(the_page_holds_the_rows_of_the_front_to_the_last_digit)
 {
     static const char *const RUNS[] = {"tower", "dtlz"};
     for (int i = 0; i < 2; i++) {
-        FREED char *page = file_of(RUNS[i], "report.html");
-        FREED char *front = file_of(RUNS[i], "front.csv"), *rows = between(page, "id=\"rows\">\n", "</script>");
+        FREED char *page = file_of(RUNS[i], "report.html"), *front = file_of(RUNS[i], "front.csv");
+        FREED char *rows = between(page, "id=\"rows\">\n", "</script>");
         const char *whole = front;
-        for (char *row = strtok(rows, "\n"); row;
-             row = strtok(NULL, "\n")) { /* in the file cells of errors follow, empty ones too */
-            whole = strchr(whole, '\n') + 1;
+        for (char *row = strtok(rows, "\n"); row; row = strtok(NULL, "\n")) {
+            whole = strchr(whole, '\n') + 1; /* in the file cells of errors follow, empty ones too */
             assert_int_equal(strncmp(whole, row, strlen(row)), 0);
             assert_true(whole[strlen(row)] == '\n' || (i == 0 && whole[strlen(row)] == ','));
         }
@@ -190,12 +184,10 @@ static json_t *run_of(const char *run)
 /* 20000 samples of a box: the standard error of a share. */
 TEST(growth_is_the_hypervolume_that_status_tells)
 {
-    OWNED(run_free) Run run;
-    char path[PATH_MAX];
-    json_t *page = run_of("dtlz"), *growth = json_object_get(page, "convergence");
-    json_t *simulated = json_object_get(growth, "simulated"), *volume = json_object_get(growth, "volume");
-    json_t *error = json_object_get(growth, "error");
-    CHECK_OK(run_read(&run, path_of("dtlz", path), &err), &err);
+    OWNED(run_free) Run run = run_in("dtlz");
+    json_auto_t *page = run_of("dtlz");
+    const json_t *growth = json_object_get(page, "convergence"), *error = json_object_get(growth, "error");
+    const json_t *simulated = json_object_get(growth, "simulated"), *volume = json_object_get(growth, "volume");
     assert_true(run.n_generations > 1 && json_array_size(volume) == run.n_generations);
     assert_int_equal(json_integer_value(json_object_get(page, "evaluated")), run.table.n);
     for (size_t i = 0; i < run.n_generations; i++) {
@@ -205,7 +197,6 @@ TEST(growth_is_the_hypervolume_that_status_tells)
         assert_close(json_number_value(json_array_get(error, i)), sqrt(v * (1 - v) / 20000), 1e-5);
         assert_same_number(json_number_value(json_array_get(simulated, i)), (double)run.generation[i].simulated);
     }
-    json_decref(page);
 }
 
 TEST(the_page_has_the_errors_of_front_csv)
@@ -220,8 +211,7 @@ TEST(the_page_has_the_errors_of_front_csv)
         row++;
     assert_less(row, t.n_rows);
     for (size_t k = 0; k < json_array_size(names); k++) {
-        char name[64];
-        snprintf(name, sizeof name, "err_%s", json_string_value(json_object_get(json_array_get(names, k), "name")));
+        FREED char *name = formatted("err_%s", json_string_value(json_object_get(json_array_get(names, k), "name")));
         const int column = table_column(&t, name);
         assert_at_most(0, column);
         assert_close(json_number_value(json_array_get(errors, k)), t.values[row * t.n_cols + (size_t)column], 1e-5);
@@ -240,9 +230,8 @@ TEST(an_objective_of_several_simulations_says_of_which)
                  {"a.csv, b.csv", "mean", "mean of 3 records x 4 replicates", 4},
                  {"a.csv", "0.9", "quantile 0.9 of 2 records x 8 replicates", 8}};
     for (size_t i = 0; i < sizeof CASES / sizeof CASES[0]; i++) {
-        Settings s;
+        Settings s = default_settings();
         char text[RULE_WORDS_MAX];
-        settings_defaults(&s);
         CHECK_OK(settings_put(&s, "motion.records", CASES[i].records, &err), &err);
         CHECK_OK(settings_put(&s, "sim.robust", CASES[i].robust, &err), &err);
         s.sim.replicates = CASES[i].replicates;
@@ -264,8 +253,7 @@ TEST(notes_that_are_damaged_or_of_other_designs_are_named_by_the_report)
 TEST(the_most_records_of_a_study_and_as_many_others_are_elsewhere)
 {
     FREED OtherRecords *r = calloc(1, sizeof *r);
-    Settings s;
-    settings_defaults(&s);
+    Settings s = default_settings();
     MotionOptions study = s.motion;
     static const char *const NAMES[] = {"elcentro", "sylmar"};
     for (int k = 0; k < 2; k++) {
@@ -287,13 +275,12 @@ TEST(the_most_records_of_a_study_and_as_many_others_are_elsewhere)
 /* Other words behind the path, another channel or factor, make another record of the same file. */
 TEST(a_record_counts_once_under_two_names_and_the_second_is_said)
 {
-    static const char OTHER[] = "0,0\n0.01,1\n0.02,-2\n0.03,0\n";
     FREED OtherRecords *r = calloc(1, sizeof *r);
-    char *own = in_place("own.csv"), *twin = in_place("twin.csv"), *other = in_place("other.csv"), twice[200];
+    FREED char *own = in_place("own.csv"), *twin = in_place("twin.csv"), *other = in_place("other.csv");
+    FREED char *twice = formatted("%s factor=2", own);
     MotionOptions study = tower.settings->motion;
-    write_in_place("other.csv", OTHER);
+    write_in_place("other.csv", "0,0\n0.01,1\n0.02,-2\n0.03,0\n");
     snprintf(study.record, sizeof study.record, "%s", own);
-    snprintf(twice, sizeof twice, "%s factor=2", own);
     CHECK_OK(elsewhere_of_study(r, &study, &err), &err);
     for (int k = 0; k < 2; k++) {
         CHECK_OK(elsewhere_add(r, twin, &err), &err);
@@ -303,9 +290,6 @@ TEST(a_record_counts_once_under_two_names_and_the_second_is_said)
     assert_int_equal(r->n, 2);
     assert_string_equal(r->source[0], other);
     assert_string_equal(r->source[1], twice);
-    free(own);
-    free(twin);
-    free(other);
 }
 
 /* The band of the page ends where the worst of the records, simulated each on its own, ends; the standard error of their
@@ -314,41 +298,39 @@ TEST(the_band_of_a_design_reaches_from_the_mildest_to_the_worst_of_its_records)
 {
     static const char *const RECORDS[] = {"builtin:kobe-like", "builtin:sylmar-like", "builtin:elcentro-like"};
     Settings s = *tower.settings;
-    Detail several, alone;
+    OWNED(detail_free) Detail several;
     CHECK_OK(settings_put(&s, "motion.records", "builtin:sylmar-like, builtin:elcentro-like", &err), &err);
     CHECK_OK(settings_put(&s, "sim.robust", "mean", &err), &err);
     CHECK_OK(settings_put(&s, "sim.duration_s", "3", &err), &err);
     const double *x = tower.table.row[run_knee(&tower)].x;
     const DetailOptions options = {.without_devices = 1, .other = &s};
     CHECK_OK(detail_make(&s, (int)tower.schema.n_var, x, &options, &several, &err), &err);
-    json_t *page = detail_json(&several, &tower.schema.order),
-           *ends = json_object_get(json_object_get(page, "band"), "peak_drift_m");
+    json_auto_t *page = detail_json(&several, &tower.schema.order);
+    const json_t *ends = json_object_get(json_object_get(page, "band"), "peak_drift_m");
     double low = INFINITY, high = 0, j1[3], mean, sd;
     for (int i = 0; i < 3; i++) {
         CHECK_OK(settings_put(&s, "motion.records", "none", &err), &err);
         CHECK_OK(settings_put(&s, "motion.record", RECORDS[i], &err), &err);
+        OWNED(detail_free) Detail alone;
         CHECK_OK(detail_make(&s, (int)tower.schema.n_var, x, &options, &alone, &err), &err);
         low = fmin(low, alone.result[SCENE_IMPACT].peak_drift_m[4]);
         high = fmax(high, alone.result[SCENE_IMPACT].peak_drift_m[4]);
         j1[i] = alone.result[SCENE_IMPACT].j1_m;
         assert_true(isnan(alone.standard_error[MEASURE_J1]));
-        detail_free(&alone);
     }
     assert_true(low < 0.98 * high);
     assert_close(json_number_value(json_array_get(json_array_get(ends, 0), 4)), low, 1e-12);
     assert_close(json_number_value(json_array_get(json_array_get(ends, 1), 4)), high, 1e-12);
     mean_and_sd_of(3, j1, &mean, &sd);
     assert_close(several.standard_error[MEASURE_J1], sd * sqrt(2.0 / 3) / sqrt(3), 0.15);
-    json_decref(page);
-    detail_free(&several);
 }
 
 static int is_among(size_t row, size_t n, const size_t rows[])
 {
-    size_t i = 0;
-    while (i < n && rows[i] != row)
-        i++;
-    return i < n;
+    for (size_t i = 0; i < n; i++)
+        if (rows[i] == row)
+            return 1;
+    return 0;
 }
 
 static double extreme(const Run *run, size_t n, const size_t rows[], size_t column, double sign)
@@ -362,9 +344,7 @@ static double extreme(const Run *run, size_t n, const size_t rows[], size_t colu
 
 TEST(a_thinned_front_keeps_every_range_the_knee_and_what_is_asked_for)
 {
-    OWNED(run_free) Run run;
-    char path[PATH_MAX];
-    CHECK_OK(run_read(&run, path_of("dtlz", path), &err), &err);
+    OWNED(run_free) Run run = run_in("dtlz");
     const size_t n_columns = run.schema.n_obj + run.schema.n_var, most = 2 * n_columns + 4;
     const size_t kept[] = {run_knee(&run), run.front[1]};
     FREED size_t *rows = calloc(run.n_front, sizeof *rows);
@@ -382,9 +362,8 @@ TEST(a_thinned_front_keeps_every_range_the_knee_and_what_is_asked_for)
 }
 
 /* The command, which opens the file as often at most, as far as strace can tell. */
-static void expect_openings(size_t most, const char *file, const char *arguments)
+static void expect_openings(int most, const char *file, const char *arguments)
 {
-    size_t n = 0;
     /* the leak sanitizer and strace exclude each other */
     if (SANITIZED || system("strace -o /dev/null true >/dev/null 2>&1") != 0) {
         expect(0, "", arguments);
@@ -395,10 +374,9 @@ static void expect_openings(size_t most, const char *file, const char *arguments
     expect(0, "", arguments);
     place.under[0] = 0;
     FREED char *trace = read_in_place("trace");
-    for (const char *at = trace; (at = strstr(at, file)); at++)
-        n++;
+    const int n = count(trace, file);
     if (n == 0 || n > most)
-        fail_msg("%s: opens %s %zu times", arguments, file, n);
+        fail_msg("%s: opens %s %d times", arguments, file, n);
 }
 
 TEST(a_report_needs_the_database_alone)
@@ -406,13 +384,11 @@ TEST(a_report_needs_the_database_alone)
     shell_in_place("mkdir bare && cp tower/run.sqlite bare");
     expect_openings(1, "run.sqlite\"", "report @/bare --design knee --record @/own.csv --unit m_s2");
     json_auto_t *bare = run_of("bare"), *whole = run_of("tower");
-    static const char *const PARTS[] = {"schema", "knee",     "evaluated", "convergence",
-                                        "detail", "settings", "provenance"};
     json_object_del(json_object_get(bare, "detail"), "verdict"); /* its last line names the folder */
     json_object_del(json_object_get(whole, "detail"), "verdict");
-    for (size_t i = 0; i < sizeof PARTS / sizeof PARTS[0]; i++)
-        if (!json_equal(json_object_get(bare, PARTS[i]), json_object_get(whole, PARTS[i])))
-            fail_msg("%s differs", PARTS[i]);
+    FOR_EACH (const char *, part, "schema", "knee", "evaluated", "convergence", "detail", "settings", "provenance")
+        if (!json_equal(json_object_get(bare, *part), json_object_get(whole, *part)))
+            fail_msg("%s differs", *part);
     assert_int_equal(json_integer_value(json_object_get(bare, "evaluated")), 60);
 }
 
@@ -421,12 +397,10 @@ TEST(a_command_opens_the_database_of_a_run_once)
 {
     if (SANITIZED)
         skip();
-    expect_openings(1, "run.sqlite\"", "choose @/tower --weights j1_m=1");
-    expect_openings(1, "run.sqlite\"", "evaluate @/tower --design knee --record builtin:elcentro-like");
-    expect_openings(1, "run.sqlite\"", "export @/tower --csv /dev/null");
-    expect_openings(1, "run.sqlite\"", "status @/tower");
-    expect_openings(1, "run.sqlite\"", "polish @/tower --design knee --max-evals 24");
-    expect_openings(1, "run.sqlite\"", "optimize @/tower");
+    FOR_EACH (const char *, command, "choose @/tower --weights j1_m=1",
+              "evaluate @/tower --design knee --record builtin:elcentro-like", "export @/tower --csv /dev/null",
+              "status @/tower", "polish @/tower --design knee --max-evals 24", "optimize @/tower")
+        expect_openings(1, "run.sqlite\"", *command);
 }
 
 /* Once for the study, once for each level of steps that its named designs need, of which three suffice here; and for the
@@ -458,9 +432,8 @@ TEST(a_run_of_another_problem_has_no_tower_in_its_report)
 TEST(names_cannot_break_out_of_the_page)
 {
     expect(0, "",
-           "optimize configs/quick.ini " DTLZ2(
-               5, 4) "--set \"problem.objective_names=</script><b>, <!--x,'=c,-d\" --max-evals 30 "
-                     "--set search.population=8 --set search.initial=20 --out @/names");
+           "optimize configs/quick.ini --set \"problem.objective_names=</script><b>, <!--x,'=c,-d\" --max-evals 30 "
+           "--set search.population=8 --set search.initial=20 --out @/names " DTLZ2(5, 4));
     expect(0, "", "report @/names");
     json_auto_t *run = run_of("names");
     const json_t *objectives = json_object_get(json_object_get(run, "schema"), "objectives");
@@ -483,9 +456,8 @@ TEST(designs_and_records_that_are_not_there_are_refused)
 /* The number in cell n, from 1, behind a row's name, below a heading. */
 static double cell(const char *page, const char *heading, const char *name, int n)
 {
-    char row[80];
     const char *at = strstr(page, heading);
-    snprintf(row, sizeof row, ">%s</th>", name);
+    FREED char *row = formatted(">%s</th>", name);
     at = at ? strstr(at, row) : NULL;
     for (int i = 0; at && i < n; i++)
         at = strstr(at + 1, "<td>");
@@ -494,43 +466,29 @@ static double cell(const char *page, const char *heading, const char *name, int 
     return at ? atof(at + strlen("<td>")) : NAN;
 }
 
-static double first_cell(const char *page, const char *heading, const char *name)
-{
-    return cell(page, heading, name, 1);
-}
+#define first_cell(page, heading, name) cell(page, heading, name, 1)
 
 TEST(a_dossier_has_the_design_by_fine_and_by_cvode_limits_and_what_is_not_covered)
 {
-    static const char *const PARTS[] = {"Building, core and ground motion",
-                                        "The design</h2>",
-                                        "The response by four calculations",
-                                        "Forces and stresses",
-                                        "kept</td>",
-                                        "Which effects the model needs",
-                                        "Records one by one",
-                                        ">builtin:kobe-like,",
-                                        ">builtin:elcentro-like,",
-                                        "Against intensity",
-                                        "What the figures depend on",
-                                        "without stiffeners",
-                                        "matrices_fnv1a",
-                                        "</html>"};
+    static const char CALCULATIONS[] = "The response by four calculations";
     expect(0, "", "report @/tower --dossier @/dossier.html --record builtin:elcentro-like");
     FREED char *page = read_in_place("dossier.html");
     const char *at = page;
-    for (size_t i = 0; i < N_OF(PARTS); i++) {
-        const char *next = strstr(at, PARTS[i]);
+    FOR_EACH (const char *, part, "Building, core and ground motion", "The design</h2>", CALCULATIONS,
+              "Forces and stresses", "kept</td>", "Which effects the model needs", "Records one by one",
+              ">builtin:kobe-like,", ">builtin:elcentro-like,", "Against intensity", "What the figures depend on",
+              "without stiffeners", "matrices_fnv1a", "</html>") {
+        const char *next = strstr(at, *part);
         if (!next)
-            fail_msg("no %s behind what has to stand before it", PARTS[i]);
+            fail_msg("no %s behind what has to stand before it", *part);
         at = next ? next : at; /* fail_msg does not return, which cppcheck does not know */
     }
-    assert_null(strstr(page, "nan (nan"));
-    assert_null(strstr(page, "tuned mass 0 t")); /* there is none */
+    assert_words(page, "!nan (nan", "!tuned mass 0 t"); /* there is none */
     expect(2, "name the file .html or .pdf", "report @/tower --dossier @/dossier.txt");
     json_auto_t *fine = json_of("simulate @/tower/settings.ini --design @/tower:knee --set sim.accuracy=fine --json");
     const double wanted = number(fine, "j1_m");
-    assert_close(first_cell(page, PARTS[2], "accuracy fine"), wanted, 5e-3); /* three digits */
-    assert_close(first_cell(page, PARTS[2], "by CVODE (SUNDIALS)"), wanted, 5e-3);
+    assert_close(first_cell(page, CALCULATIONS, "accuracy fine"), wanted, 5e-3); /* three digits */
+    assert_close(first_cell(page, CALCULATIONS, "by CVODE (SUNDIALS)"), wanted, 5e-3);
     assert_close(cell(page, "<h1>", "no core", 2), report.detail.result[SCENE_NO_CORE].j1_m, 5e-3);
 }
 
@@ -539,21 +497,18 @@ TEST(a_dossier_of_several_records_has_what_the_study_judges_and_the_largest_dema
 {
     static const char *const RECORDS[] = {"kobe", "sylmar", "elcentro"}; /* the mildest first */
     double stress = 0, j1 = 0;
-    char arguments[800], command[800];
+    char command[800];
     expect(0, "",
-           "optimize configs/quick.ini " SIX_FLOORS "--max-evals 12 --set search.population=8 --set search.initial=8 "
-           "--set search.polish=0 --set motion.stretch=0.5 --set sim.duration_s=3 --set sim.accuracy=coarse --record "
-           "builtin:kobe-like "
+           SMALL_STUDY
+           "--max-evals 12 --set sim.duration_s=3 --set sim.accuracy=coarse --record builtin:kobe-like "
            "--set motion.records=builtin:sylmar-like,builtin:elcentro-like --set sim.robust=worst "
            "--set search.objectives=j1_m,mcore_kg --set 'search.limits=p(drift_ratio>0.2)<=0.5' --out @/several");
     expect(0, "", "report @/several --dossier @/several.html");
     FREED char *page = read_in_place("several.html");
     for (size_t i = 0; i < N_OF(RECORDS); i++) {
-        snprintf(arguments, sizeof arguments,
-                 "simulate @/several/settings.ini --design @/several:knee --set motion.records=none --record "
-                 "builtin:%s-like --json",
-                 RECORDS[i]);
-        json_auto_t *alone = json_of("%s", arguments);
+        json_auto_t *alone = json_of("simulate @/several/settings.ini --design @/several:knee --set "
+                                     "motion.records=none --record builtin:%s-like --json",
+                                     RECORDS[i]);
         j1 = fmax(j1, number(alone, "j1_m"));
         stress = fmax(stress, number(alone, "core_stress_pa"));
     }
@@ -567,33 +522,29 @@ TEST(a_dossier_of_several_records_has_what_the_study_judges_and_the_largest_dema
     json_auto_t *again = json_of("%s", command);
     assert_close(cell(page, "The response by", "accuracy fine", 6), number(again, "ed5_10_pct"), 5e-3);
     assert_int_equal(cell(page, "The response by", "accuracy fine", 8), number(again, "impacts"));
-    FREED char *said = output_of("simulate @/several/settings.ini --design @/several:knee");
-    assert_non_null(strstr(said, "of replacement; under builtin:kobe-like\n"));
+    expect_output("of replacement; under builtin:kobe-like\n",
+                  "simulate @/several/settings.ini --design @/several:knee");
 }
 
 TEST(a_dossier_of_a_design_that_was_screened_only_says_so)
 {
     expect(0, "",
-           "optimize configs/quick.ini " SIX_FLOORS
-           "--max-evals 8 --set search.population=8 --set search.initial=8 --set "
-           "search.polish=0 --set motion.stretch=0.5 --set sim.duration_s=1.5 --record builtin:elcentro-like --set "
-           "sim.accuracy=coarse --set "
-           "motion.records=builtin:sylmar-like,builtin:kobe-like "
-           "--set search.fidelity=records --set search.objectives=j1_m,mcore_kg --out @/screened");
+           SMALL_STUDY
+           "--max-evals 8 --set sim.duration_s=1.5 --record builtin:elcentro-like --set sim.accuracy=coarse "
+           "--set motion.records=builtin:sylmar-like,builtin:kobe-like --set search.fidelity=records "
+           "--set search.objectives=j1_m,mcore_kg --out @/screened");
     expect(0, "", "report @/screened --design 1 --dossier @/screened.html");
-    FREED char *page = read_in_place("screened.html");
-    assert_non_null(strstr(page, "of 3 records, of which this design, only screened, has seen a part.</p>"));
+    expect_file("screened.html", "of 3 records, of which this design, only screened, has seen a part.</p>");
 }
 
 /* Links on the floors of a zone or none at all; the building alone costs nothing. */
 TEST(a_design_of_links_is_said_to_be_one_and_its_dossier_has_their_constants_and_forces)
 {
     FREED char *said = output_of(
-        "optimize configs/quick.ini " SIX_FLOORS "--max-evals 8 --set search.population=8 --set search.initial=8 --set "
-        "search.polish=0 --set motion.stretch=0.5 --set sim.duration_s=2 --record builtin:elcentro-like --set "
-        "design.variables=gaps,thickness,links --set "
-        "design.devices=link,none --set design.device_zones=2 --set design.gap_zones=1 --set design.link_zones=1 --set "
-        "search.objectives=j1_m,cost --set 'design.prices=link=1 core_t=1' --out @/links");
+        SMALL_STUDY
+        "--max-evals 8 --set sim.duration_s=2 --record builtin:elcentro-like --set search.objectives=j1_m,cost "
+        "--set design.variables=gaps,thickness,links --set design.devices=link,none --set design.device_zones=2 --set "
+        "design.gap_zones=1 --set design.link_zones=1 --set 'design.prices=link=1 core_t=1' --out @/links");
     assert_words(said, "Against no core J1 \u00d7 0.", "!never_closing");
     expect(0, "", "report @/links --dossier @/links.html");
     FREED char *page = read_in_place("links.html");
@@ -610,9 +561,8 @@ TEST(a_design_of_links_is_said_to_be_one_and_its_dossier_has_their_constants_and
 /* What the shell says of the test's folder, "9\n". */
 static void expect_said(const char *wanted, const char *command)
 {
-    char line[800], said[80] = "";
-    snprintf(line, sizeof line, "cd '%s' && %s", place.folder, command);
-    FILE *f = popen(line, "r");
+    char said[80] = "";
+    FILE *f = popen(brief("cd '%s' && %s", place.folder, command), "r");
     assert_true(f && fgets(said, sizeof said, f) && pclose(f) == 0);
     if (strncmp(said, wanted, strlen(wanted)) != 0)
         fail_msg("%s: %s", command, said);
@@ -632,9 +582,8 @@ TEST(a_dossier_that_cannot_be_made_is_refused_before_anything_is_simulated)
 /* The numbers behind a word of the titles in a picture, floor by floor: "floor 3: 41.2 mm". */
 static void expect_floors(const char *svg, const char *format, double factor, const double values[])
 {
-    char head[64];
     for (int j = 0; j < report.detail.n_floors; j++) {
-        snprintf(head, sizeof head, format, j + 1);
+        FREED char *head = formatted(format, j + 1);
         const char *at = strstr(svg, head);
         assert_non_null(at);
         assert_close(atof(at + strlen(head)), factor * values[j], 5e-3); /* three digits */
@@ -647,27 +596,20 @@ TEST(pictures_are_drawn_as_svg_and_png_each)
     static const char *const NAMES[] = {"front", "growth",   "gaps",         "peaks",
                                         "modes", "energies", "displacement", "elsewhere"};
     static const int WIDTHS[] = {1200, 700, 900, 1200, 1200, 1200, 1200, 1000};
-    /* The front has short titles, units for people and every baseline. */
-    static const char *const WORDS[] = {"J1 displacement [m]", "contact force [MN]", "without core",
-                                        "rigidly connected",   "tuned mass damper",  "viscous links"};
-    char name[80], wide[32];
     if (!has_browser())
         skip();
     expect_openings(1, "run.sqlite\"", "report @/tower --pictures @/tower/pictures");
     expect(0, "", "report @/names --pictures @/names/pictures");
     for (size_t i = 0; i < N_OF(NAMES); i++) {
-        snprintf(name, sizeof name, "tower/pictures/%s.svg", NAMES[i]);
-        FREED char *svg = read_in_place(name);
-        snprintf(wide, sizeof wide, " width=\"%d\"", WIDTHS[i]);
-        if (!strstr(svg, wide) || strstr(svg, "<foreignObject"))
-            fail_msg("%s is not as wide, or no plain SVG", name);
-        snprintf(name, sizeof name, "head -c 20 tower/pictures/%s.png | tail -c 2 | od -An -t u1", NAMES[i]);
-        snprintf(wide, sizeof wide, " %3d %3d", WIDTHS[i] * 3 / 2 / 256, WIDTHS[i] * 3 / 2 % 256);
-        expect_said(wide, name);
-        for (size_t k = 0; i == 0 && k < N_OF(WORDS); k++)
-            assert_non_null(strstr(svg, WORDS[k]));
-        if (i == 0) /* in three panels, the chosen design twice */
+        FREED char *name = formatted("tower/pictures/%s.svg", NAMES[i]), *svg = read_in_place(name);
+        assert_words(svg, brief(" width=\"%d\"", WIDTHS[i]), "!<foreignObject");
+        FREED char *width = formatted(" %3d %3d", WIDTHS[i] * 3 / 2 / 256, WIDTHS[i] * 3 / 2 % 256);
+        expect_said(width, brief("head -c 20 tower/pictures/%s.png | tail -c 2 | od -An -t u1", NAMES[i]));
+        if (i == 0) { /* short titles, units for people and every baseline; in three panels, the chosen design twice */
+            assert_words(svg, "J1 displacement [m]", "contact force [MN]", "without core", "rigidly connected",
+                         "tuned mass damper", "viscous links");
             assert_int_equal(count(svg, "<circle "), 3 * (tower.n_front + 1));
+        }
         if (i == 2) {
             expect_floors(svg, "<title>floor %d: ", 1e3, report.detail.gap_side_m[0]);
             expect_floors(svg, "<title>thickness, floor %d: ", 1e3, report.detail.thickness_m);
@@ -702,15 +644,12 @@ TEST(a_dossier_of_a_hostile_folder_shows_its_name_as_text_and_runs_no_scripts_bu
 /* The bundle is what its sources make of the libraries; they are there after `make web`. */
 TEST(the_bundle_of_charts_is_what_its_sources_give)
 {
-    char command[512];
     if (access("web/node_modules/esbuild", F_OK) != 0) {
         print_message("web/node_modules is not there (make web): the bundle is not made again\n");
         skip();
     }
-    snprintf(command, sizeof command,
-             "cd web && node bundle.mjs '%s' && cmp '%s/charts.js' charts.js && cmp '%s/LICENSES.txt' LICENSES.txt",
-             place.folder, place.folder, place.folder);
-    assert_int_equal(system(command), 0);
+    expect_shell("cd web && node bundle.mjs '%s' && cmp '%s/charts.js' charts.js && cmp '%s/LICENSES.txt' LICENSES.txt",
+                 place.folder, place.folder, place.folder);
 }
 
 SUITE(set_up, tear_down)

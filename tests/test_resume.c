@@ -1,11 +1,7 @@
 /* A search that goes on from any generation's end makes the same bytes as one that never stopped. */
-
-#include "base/linalg.h"
 #include <omp.h>
 
 #include "base/pack.h"
-#include "bench/textbook.h"
-#include "functions.h"
 #include "searches.h"
 
 typedef struct {
@@ -196,7 +192,6 @@ TEST(a_search_at_its_limit_simulates_nothing_more)
 
 static void refuse(const SearchConfig *c, const SearchStart *start)
 {
-    err = (Err){0};
     StopReason reason;
     assert_refused(search_run(&here.problem, c, start, moment_note, &resumed, &reason, &err), STATUS_BAD_DATA,
                    "does not fit");
@@ -260,9 +255,8 @@ static void check_this_is_refused_everywhere(double number)
 
 TEST(a_state_with_a_number_anywhere_that_is_not_finite_is_refused)
 {
-    static const double NUMBERS[] = {NAN, INFINITY, -INFINITY};
-    for (size_t i = 0; i < N_OF(NUMBERS); i++)
-        check_this_is_refused_everywhere(NUMBERS[i]);
+    FOR_EACH (double, number, NAN, INFINITY, -INFINITY)
+        check_this_is_refused_everywhere(*number);
 }
 
 /* What a Pack reads is what it wrote; a fault stops it before anything is changed. */

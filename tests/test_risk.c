@@ -2,8 +2,6 @@
 #include "runs.h"
 
 #include "analysis/evaluations.h"
-#include "base/random.h"
-#include "base/stat.h"
 #include "evaluate/consequences.h"
 #include "evaluate/race.h"
 #include "evaluate/replicates.h"
@@ -290,7 +288,6 @@ TEST(the_loss_lies_between_nothing_and_the_whole_building)
 }
 
 /* -- as a command -------------------------------------------------------------------------------------------------- */
-
 #define SUITE_LIST "evaluate @/tower.ini --design @/chance:knee --record @/three_list.txt "
 #define CURVES     SUITE_LIST "--sa 0.1:0.1:0.6 --fragility 'drift_ratio=0.012,drift_ratio<=0.02,j3_g=0.5' "
 
@@ -310,10 +307,8 @@ static const json_t *curve_of(const json_t *o, const char *of, const char *scene
 /* Of a word of a picture [px], downwards. */
 static double height_of(const char *svg, const char *word)
 {
-    char text[80];
     double y = NAN;
-    snprintf(text, sizeof text, ">%s</tspan>", word);
-    const char *at = strstr(svg, text);
+    const char *at = strstr(svg, brief(">%s</tspan>", word));
     while (at && at > svg && strncmp(at, "translate(", 10) != 0)
         at--;
     if (!at || sscanf(at, "translate(%*f,%lf)", &y) != 1)
@@ -324,12 +319,11 @@ static double height_of(const char *svg, const char *word)
 /* No row of the key is as low as the first title of a panel, below which its frame begins. */
 static void expect_key_above_the_panels(void)
 {
-    static const char *const WORDS[] = {"with core", "rigidly connected", "without core", "viscous links"};
     free(output_of(CURVES "--svg @/curves.svg"));
     FREED char *svg = read_in_place("curves.svg");
     const double title = height_of(svg, "drift_ratio &gt; 0.012");
-    for (size_t i = 0; i < sizeof WORDS / sizeof WORDS[0]; i++)
-        assert_less(height_of(svg, WORDS[i]), title - 10);
+    FOR_EACH (const char *, word, "with core", "rigidly connected", "without core", "viscous links")
+        assert_less(height_of(svg, *word), title - 10);
     const char *height = strstr(svg, "height=\"");
     assert_non_null(height);
     assert_less(title + 300, strtod(height + 8, NULL)); /* [px] the panels are on the picture */
@@ -376,7 +370,8 @@ TEST(curves_are_of_the_simulations_beside_them_and_links_are_the_same_everywhere
 {
     write_in_place("three_list.txt", "builtin:elcentro-like\nbuiltin:sylmar-like\nbuiltin:suite-03\n");
     write_in_place("hazard.csv", "sa_g,rate_per_year\n0.01,0.1\n0.1,0.01\n1,0.0001\n");
-    json_t *o = json_of(CURVES "--hazard @/hazard.csv --json"), *run;
+    json_auto_t *o = json_of(CURVES "--hazard @/hazard.csv --json");
+    json_t *run;
     static const char *const KEYS[] = {"with_core", "no_core", "rigid", "links"};
     size_t i, n[4] = {0};
     double at_first[3], link = 0;
@@ -403,16 +398,11 @@ TEST(curves_are_of_the_simulations_beside_them_and_links_are_the_same_everywhere
             assert_less(json_number_value(rate), 0.1);
     }
     expect_annual_losses(o, KEYS);
-    json_decref(o);
-    char *table = output_of(CURVES "--csv @/rows.csv --hazard @/hazard.csv"), *rows = read_in_place("rows.csv");
-    assert_words(table, "per_year", "annual_loss");
-    assert_non_null(strstr(table, "begin lower")); /* than 0.1 g, of a hazard from 0.01 g */
-    assert_non_null(strstr(rows, "record,scene,outcome,sa_g,pga_g,scale,"));
-    free(table);
-    table = output_of(CURVES "--csv -");
-    assert_string_equal(table, rows);
-    free(table);
-    free(rows);
+    FREED char *table = output_of(CURVES "--csv @/rows.csv --hazard @/hazard.csv"), *rows = read_in_place("rows.csv");
+    assert_words(table, "per_year", "annual_loss", "begin lower"); /* than 0.1 g, of a hazard from 0.01 g */
+    assert_words(rows, "record,scene,outcome,sa_g,pga_g,scale,");
+    FREED char *printed = output_of(CURVES "--csv -");
+    assert_string_equal(printed, rows);
     if (has_browser())
         expect_key_above_the_panels();
 }
@@ -440,10 +430,9 @@ TEST(intensities_that_are_too_far_apart_are_told_by_bounds_and_without_a_rate)
     json_auto_t *o = json_of(ON_TWO "--sa 0.1 --json");
     const json_t *records = json_object_get(o, "records");
     double sum = 0; /* one of two exceeds the half of it at 0.1 g */
-    char limit[32];
     for (size_t i = 0; i < 2; i++)
         sum += number(json_object_get(json_array_get(records, i), "no_core"), "j1_m");
-    snprintf(limit, sizeof limit, "j1_m=%.9g", sum / 2);
+    FREED char *limit = formatted("j1_m=%.9g", sum / 2);
     expect_alone("between 0.01 and 1.01: finer steps", "0.01:1:1.01", limit);
     expect_alone("between 0.01 and 0.19: finer steps", "0.01:0.09:0.2", limit);
     expect_alone("below 1: begin lower", "0.1:0.9:1", limit);
@@ -480,10 +469,9 @@ TEST(one_spectral_acceleration_is_a_scaling_at_the_first_period_of_the_building)
 
 TEST(a_file_of_a_folder_that_cannot_be_read_is_listed_beside_the_levels_of_the_others)
 {
-    char path[PATH_MAX], motion[12000] = "time_s,acceleration_m_s2\n";
-    assert_int_equal(mkdir(path_of("some", path), 0777), 0);
+    char motion[12000] = "time_s,acceleration_m_s2\n";
     for (int i = 0; i < 300; i++)
-        snprintf(motion + strlen(motion), sizeof motion - strlen(motion), "%.2f,%.6f\n", 0.02 * i, sin(0.3 * i));
+        append(motion, "%.2f,%.6f\n", 0.02 * i, sin(0.3 * i));
     write_in_place("some/a.txt", "no numbers here\n1 2 x\n");
     write_in_place("some/b.csv", motion);
     json_auto_t *o = json_of(FOLDER "--json");
@@ -510,22 +498,21 @@ TEST(the_annual_loss_of_a_study_is_the_sum_over_its_records_of_rate_and_loss)
     free(output_of("optimize " YEARS "--set search.fidelity=records --set 'search.limits=annual_loss<=0.01' "
                    "--out @/years"));
     for (int i = 0; i < 3; i++) {
-        json_auto_t *o =
-            json_of("simulate @/tower.ini --design @/years:knee --json --set motion.records=none --set motion.pga_g=0 "
-                    "--set 'motion.record=%s'",
-                    SOURCE[i]);
+        json_auto_t *o = json_of("simulate @/tower.ini --design @/years:knee --json --set motion.records=none --set "
+                                 "motion.pga_g=0 --set 'motion.record=%s'",
+                                 SOURCE[i]);
         assert_true(json_is_null(json_object_get(o, "annual_loss")));
         sum += RATE[i] * number(o, "loss");
     }
-    json_t *o = json_of("simulate " YEARS "--design @/years:knee --json"), *mean = json_object_get(o, "replicates");
+    json_auto_t *o = json_of("simulate " YEARS "--design @/years:knee --json");
+    const json_t *mean = json_object_get(o, "replicates");
     assert_close(number(json_object_get(mean, "mean"), "annual_loss"), sum, 1e-12);
     assert_less(0, number(json_object_get(mean, "standard_error"), "annual_loss"));
-    json_decref(o);
-    o = json_of("evaluate @/years --design knee --json"); /* every record by its part of the sum */
+    json_auto_t *parts = json_of("evaluate @/years --design knee --json"); /* every record by its part of the sum */
     for (size_t i = 0; i < 3; i++)
-        sum -= number(json_object_get(json_array_get(json_object_get(o, "records"), i), "with_core"), "annual_loss");
+        sum -=
+            number(json_object_get(json_array_get(json_object_get(parts, "records"), i), "with_core"), "annual_loss");
     assert_true(fabs(sum) < 1e-12);
-    json_decref(o);
     free(output_of("evaluate @/years --design knee --record builtin:suite-02")); /* without a rate */
 }
 
@@ -666,8 +653,7 @@ TEST(an_event_for_simcenter_is_read_back_as_the_motion_that_it_is_of)
 {
     free(output_of("spectrum builtin:kobe-like --pga 0.3 --history @/event.json"));
     OWNED(motion_free) Motion m, again;
-    char path[PATH_MAX];
-    CHECK_OK(motion_load(&again, path_of("event.json", path), UNIT_FROM_FILE, &err), &err);
+    CHECK_OK(motion_load(&again, there("event.json"), UNIT_FROM_FILE, &err), &err);
     CHECK_OK(motion_load(&m, "builtin:kobe-like", UNIT_FROM_FILE, &err), &err);
     assert_int_equal(again.n, m.n);
     assert_close(again.dt_s, m.dt_s, 1e-15);

@@ -5,7 +5,6 @@
 #include "base/dominance.h"
 #include "store/database.h"
 #include "store/folder.h"
-#include "store/run_read.h"
 #include "study/merged.h"
 
 /* The sound run, copied, with that change. */
@@ -45,15 +44,11 @@ TEST(what_is_wrong_in_one_cell_is_named)
         {"DELETE FROM evaluation", "evaluation 1 is missing", STATUS_IO},
         {"ALTER TABLE session DROP COLUMN stopped", "its table session is not that of this run", STATUS_IO},
         {"ALTER TABLE evaluation RENAME COLUMN x2 TO x7", "its table evaluation is not that of this run", STATUS_IO},
-        {"ALTER TABLE finer ADD COLUMN level2 INTEGER", "its table finer is not that of this run", STATUS_IO},
-    };
+        {"ALTER TABLE finer ADD COLUMN level2 INTEGER", "its table finer is not that of this run", STATUS_IO}};
     char folder[PATH_MAX];
     for (size_t i = 0; i < sizeof CASES / sizeof CASES[0]; i++) {
         Run h;
-        err = (Err){0};
-        const Status status = run_read(&h, changed(CASES[i].sql, folder), &err);
-        if (status != CASES[i].status || !strstr(err.text, CASES[i].words))
-            fail_msg("%s: %d, %s", CASES[i].sql, status, err.text);
+        assert_refused(run_read(&h, changed(CASES[i].sql, folder), &err), CASES[i].status, CASES[i].words);
         assert_true(h.table.n == 0 && !h.table.row && !h.state);
         assert_int_equal(err.sub, SUB_DAMAGED);
     }
@@ -69,8 +64,7 @@ TEST(a_run_that_lost_an_evaluation_is_not_resumed)
 
 TEST(json_for_which_there_is_no_room_is_an_output_that_cannot_be_written)
 {
-    FILE *full = fopen("/dev/full", "we");
-    assert_non_null(full);
+    FILE *full = opened("/dev/full", "we");
     setvbuf(full, NULL, _IONBF, 0);
     OWNED(run_free) Run run = run_in("sound");
     assert_int_equal(export_json(full, &run, &err), STATUS_IO);
@@ -151,15 +145,14 @@ TEST(polished_designs_compete_with_the_front_and_can_be_dropped)
 
 TEST(a_run_read_for_its_front_has_the_front_and_the_counts_of_the_whole)
 {
-    char folder[PATH_MAX], path[PATH_MAX + 12];
+    char folder[PATH_MAX];
     write_in_place("plain.ini", DTLZ2_INI(4, 2));
     free(output_of("optimize @/plain.ini --max-evals 150 --out @/halves"));
     path_of("halves", folder);
     OWNED(run_free) Run whole = {0}, part = {0};
     CHECK_OK(run_read(&whole, folder, &err), &err);
     Database *d;
-    snprintf(path, sizeof path, "%s/run.sqlite", folder);
-    CHECK_OK(database_open(&d, path, DATABASE_READ, &err), &err);
+    CHECK_OK(database_open(&d, brief("%s/run.sqlite", folder), DATABASE_READ, &err), &err);
     CHECK_OK(run_load(&part, d, folder, RUN_FRONT, &err), &err);
     database_close(d);
     assert_less(part.table.n, whole.table.n);
@@ -196,9 +189,8 @@ static double apart2(const Run *run, size_t i, size_t n, const size_t chosen[])
 
 TEST(a_choice_of_three_begins_with_the_knee_and_goes_on_with_the_farthest)
 {
-    char folder[PATH_MAX];
     OWNED(run_free) Run run = {0};
-    CHECK_OK(run_read(&run, path_of("halves", folder), &err), &err);
+    CHECK_OK(run_read(&run, there("halves"), &err), &err);
     size_t rows[3];
     const size_t ideal = run.table.n;
     assert_int_equal(run_spread_out(&run, 3, 1, rows), 3);
@@ -266,10 +258,9 @@ TEST(several_runs_are_one_front_on_which_a_design_stands_once)
 
 TEST(a_folder_without_a_run_or_with_too_long_a_name_is_told)
 {
-    char path[PATH_MAX], name[PATH_MAX + 64];
+    char name[PATH_MAX + 64];
     Run run;
-    assert_refused(run_read(&run, path_of("nothing", path), &err), STATUS_MISSING,
-                   "nothing: there is no such file or folder");
+    assert_refused(run_read(&run, there("nothing"), &err), STATUS_MISSING, "nothing: there is no such file or folder");
     memset(name, 'a', sizeof name);
     name[sizeof name - 1] = 0;
     assert_refused(run_read(&run, name, &err), STATUS_MISSING, "holds no run");
@@ -279,7 +270,6 @@ TEST(a_folder_without_a_run_or_with_too_long_a_name_is_told)
 /* Names with quotes too; what SQLite has no room for is refused before anything is simulated. */
 TEST(every_number_has_a_column_of_its_name)
 {
-    char path[PATH_MAX];
     sqlite3 *db;
     sqlite3_stmt *row;
     OWNED(forget) Said s;
@@ -288,7 +278,7 @@ TEST(every_number_has_a_column_of_its_name)
     write_in_place("many.ini", "[problem]\nkind = external\ncommand = sh tests/worker.sh good\nvariables = 1990\n"
                                "objectives = 2\n[search]\ninitial = 4\npopulation = 4\nmax_evals = 4\n");
     free(output_of("optimize @/names.ini --out @/names"));
-    assert_int_equal(sqlite3_open(path_of("names/run.sqlite", path), &db), SQLITE_OK);
+    assert_int_equal(sqlite3_open(there("names/run.sqlite"), &db), SQLITE_OK);
     assert_int_equal(sqlite3_prepare_v2(db, "SELECT \"a b\", \"it's\", x3 FROM evaluation WHERE typeof(x3) = 'real'",
                                         -1, &row, NULL),
                      SQLITE_OK);

@@ -25,16 +25,14 @@ static void go_to_a_place_of_its_own(char before[], size_t size)
 
 TEST(a_settings_file_writes_below_results_only)
 {
-    static const char *const GOOD[] = {"results/study", "./results/a/b", "results/in/new", "results", "results/..a"};
-    static const char *const BAD[] = {"../../etc/x", "/etc/x",          "results/../../x", "results/..", "resultsx/a",
-                                      "elsewhere",   "results/out/new", "results/out",     "~/results",  "./../result"};
     char before[4096];
     go_to_a_place_of_its_own(before, sizeof before);
-    for (size_t i = 0; i < sizeof GOOD / sizeof GOOD[0]; i++)
-        CHECK_OK(output_place_check(GOOD[i], "some/where/my.ini", &err), &err);
-    for (size_t i = 0; i < sizeof BAD / sizeof BAD[0]; i++) {
-        if (output_place_check(BAD[i], "some/where/my.ini", &err) != STATUS_BAD_DATA || !strstr(err.text, BAD[i]))
-            fail_msg("%s is accepted, or not named: %s", BAD[i], err.text);
+    FOR_EACH (const char *, good, "results/study", "./results/a/b", "results/in/new", "results", "results/..a")
+        CHECK_OK(output_place_check(*good, "some/where/my.ini", &err), &err);
+    FOR_EACH (const char *, bad, "../../etc/x", "/etc/x", "results/../../x", "results/..", "resultsx/a", "elsewhere",
+              "results/out/new", "results/out", "~/results", "./../result") {
+        if (output_place_check(*bad, "some/where/my.ini", &err) != STATUS_BAD_DATA || !strstr(err.text, *bad))
+            fail_msg("%s is accepted, or not named: %s", *bad, err.text);
         assert_non_null(strstr(err.text, "--out"));
     }
     assert_int_equal(chdir(before), 0);
@@ -42,9 +40,7 @@ TEST(a_settings_file_writes_below_results_only)
 
 TEST(a_run_may_go_on_where_its_own_settings_lie)
 {
-    char own[128], file[160];
-    snprintf(own, sizeof own, "%s/kept", place.folder);
-    snprintf(file, sizeof file, "%s/settings.ini", own);
+    FREED char *own = formatted("%s/kept", place.folder), *file = formatted("%s/settings.ini", own);
     assert_int_equal(mkdir(own, 0777), 0);
     CHECK_OK(output_place_check(own, file, &err), &err);
     assert_int_equal(output_place_check(place.folder, file, &err), STATUS_BAD_DATA);
@@ -54,27 +50,25 @@ TEST(a_run_may_go_on_where_its_own_settings_lie)
 
 TEST(no_text_begins_a_cell_like_a_formula)
 {
-    static const char *const PAIRS[][2] = {
-        {"=cmd()", "'=cmd()"},
-        {"+1", "'+1"},
-        {"-x", "'-x"},
-        {"@sum", "'@sum"},
-        {"\t=x", " '=x"},
-        {"  =x", "  '=x"},
-        {"a,=b", "a;'=b"},
-        {"a; @b", "a; '@b"},
-        {"a=b-c", "a=b-c"},
-        {"mass_kg", "mass_kg"},
-        {"say \"no\"", "say  no "},
-        {"\r\n-1", "  '-1"},
-        {"\u00a0=x", "\u00a0'=x"},
-        {"\u2003 \u3000\ufeff+x", "\u2003 \u3000\ufeff'+x"},
-        {"\uff1dx", "'\uff1dx"},
-        {"a, \uff20b", "a; '\uff20b"},
-        {"\u00a0", "\u00a0"},
-        {"\u00e4=\uff1d", "\u00e4=\uff1d"},
-        {"", ""},
-    };
+    static const char *const PAIRS[][2] = {{"=cmd()", "'=cmd()"},
+                                           {"+1", "'+1"},
+                                           {"-x", "'-x"},
+                                           {"@sum", "'@sum"},
+                                           {"\t=x", " '=x"},
+                                           {"  =x", "  '=x"},
+                                           {"a,=b", "a;'=b"},
+                                           {"a; @b", "a; '@b"},
+                                           {"a=b-c", "a=b-c"},
+                                           {"mass_kg", "mass_kg"},
+                                           {"say \"no\"", "say  no "},
+                                           {"\r\n-1", "  '-1"},
+                                           {"\u00a0=x", "\u00a0'=x"},
+                                           {"\u2003 \u3000\ufeff+x", "\u2003 \u3000\ufeff'+x"},
+                                           {"\uff1dx", "'\uff1dx"},
+                                           {"a, \uff20b", "a; '\uff20b"},
+                                           {"\u00a0", "\u00a0"},
+                                           {"\u00e4=\uff1d", "\u00e4=\uff1d"},
+                                           {"", ""}};
     char cell[64];
     for (size_t i = 0; i < sizeof PAIRS / sizeof PAIRS[0]; i++) {
         cell_text(cell, sizeof cell, PAIRS[i][0]);

@@ -1,12 +1,7 @@
 /* The scene against printed numbers and closed forms: buildings, core beam, modes, contact laws, modal flow. */
-#include "check.h"
-
-#include "base/linalg.h"
-#include "scene/core_beam.h"
 #include "scene/core_beam.h"
 #include "sim/contact.h"
 #include "sim/flow.h"
-#include "sim/sim.h"
 #include "scene_options.h"
 
 static void make_core(CoreBeam *core, CoreSection section, double t_base, double t_top)
@@ -19,10 +14,8 @@ static void make_core(CoreBeam *core, CoreSection section, double t_base, double
 static void assert_hz(const double hz[], const double wanted[], int n, double tolerance_hz)
 {
     for (int i = 0; i < n; i++)
-        if (!(fabs(hz[i] - wanted[i]) <= tolerance_hz)) {
-            print_error("mode %d: %.5f Hz, wanted %.5f\n", i + 1, hz[i], wanted[i]);
-            fail();
-        }
+        if (!(fabs(hz[i] - wanted[i]) <= tolerance_hz))
+            fail_msg("mode %d: %.5f Hz, wanted %.5f", i + 1, hz[i], wanted[i]);
 }
 
 static SceneModes modes_of(const char *model, CoreSection section)
@@ -184,8 +177,7 @@ TEST(a_slender_core_vibrates_alike_by_both_theories)
  * cut-off. r, s: radius of gyration and its like for shear, over the length. */
 static double clamped_free(double b, double r, double s)
 {
-    const double r2 = r * r, s2 = s * s, b2 = b * b;
-    const double root = sqrt((r2 - s2) * (r2 - s2) + 4 / b2);
+    const double r2 = r * r, s2 = s * s, b2 = b * b, root = sqrt((r2 - s2) * (r2 - s2) + 4 / b2);
     const double alpha = sqrt((root - r2 - s2) / 2), beta = sqrt((root + r2 + s2) / 2);
     return 2 + (b2 * (r2 - s2) * (r2 - s2) + 2) * cosh(b * alpha) * cos(b * beta) -
            b * (r2 + s2) / sqrt(1 - b2 * r2 * s2) * sinh(b * alpha) * sin(b * beta);
@@ -340,21 +332,18 @@ TEST(participation_factors_add_up_to_the_whole_mass)
 
 TEST(bad_buildings_are_refused_with_file_and_fault)
 {
-    static const char *const BAD[][2] = {
-        {"not_square", "square"},
-        {"not_symmetric", "not symmetric: row 2 column 1"},
-        {"indefinite", "not positive definite"},
-        {"nan", "K.csv:2"},
-        {"words", "not a number"},
-        {"two_sizes", "M.csv: 2 floors, but K.csv has 3"},
-        {"no_mass", "M.csv"},
-        {"ragged", "K.csv:2"},
-    };
+    static const char *const BAD[][2] = {{"not_square", "square"},
+                                         {"not_symmetric", "not symmetric: row 2 column 1"},
+                                         {"indefinite", "not positive definite"},
+                                         {"nan", "K.csv:2"},
+                                         {"words", "not a number"},
+                                         {"two_sizes", "M.csv: 2 floors, but K.csv has 3"},
+                                         {"no_mass", "M.csv"},
+                                         {"ragged", "K.csv:2"}};
     for (size_t i = 0; i < sizeof BAD / sizeof BAD[0]; i++) {
-        char path[200];
         Building b;
         err = (Err){0};
-        snprintf(path, sizeof path, "tests/bad/building/%s", BAD[i][0]);
+        FREED char *path = formatted("tests/bad/building/%s", BAD[i][0]);
         assert_int_not_equal(load_model(&b, path, &err), STATUS_OK);
         if (!strstr(err.text, BAD[i][1]) || !strstr(err.text, path)) {
             print_error("%s: message '%s' does not hold '%s'\n", path, err.text, BAD[i][1]);
@@ -401,8 +390,7 @@ TEST(hertz_impact_of_two_steel_balls)
 {
     const double E = 2.1e11, nu = 0.3, R = 0.01; /* two balls: E' = E/(2 (1-nu^2)), R' = R/2, m' = m/2 */
     const double k = 4.0 / 3 * E / (2 * (1 - nu * nu)) * sqrt(R / 2);
-    const double m = 7850 * 4.0 / 3 * M_PI * R * R * R / 2, v = 1;
-    const double p = contact_hertz_indentation(k, m, v);
+    const double m = 7850 * 4.0 / 3 * M_PI * R * R * R / 2, v = 1, p = contact_hertz_indentation(k, m, v);
     assert_close(p, 2.04412126e-5, 1e-8);
     assert_close(contact_hertz_duration(k, m, v), 6.016411378e-5, 1e-9);
     assert_close(k * pow(p, 1.5), 1005.383, 1e-6);

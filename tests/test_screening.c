@@ -1,13 +1,8 @@
 /* Screening: which designs are evaluated by the cheap level alone, and what becomes of them. */
 #include <float.h>
 
-#include "base/linalg.h"
-
 #include "base/hash.h"
-#include "moga/constants.h"
-#include "base/dominance.h"
 #include "moga/levels.h"
-#include "study/search_loop.h"
 #include "searches.h"
 
 enum { VAR = 5, OBJ = 3, PARTS = 4, CHEAP = 1, EVALS = 40, ROWS_MAX = 400 };
@@ -192,7 +187,16 @@ static int tear_down(void **state)
 {
     (void)state;
     forget(&world, &seen);
+    forget(&other_world, &other);
     return 0;
+}
+
+/* Another world, in place of the one before. */
+static void open_other(size_t n_workers)
+{
+    forget(&other_world, &other);
+    memset(&other, 0, sizeof other);
+    open_world(&other_world, n_workers);
 }
 
 static void assert_same_search(void)
@@ -236,19 +240,16 @@ TEST(a_finished_design_has_the_bytes_of_one_evaluated_at_once)
 
 TEST(four_workers_make_the_bytes_of_one)
 {
-    memset(&other, 0, sizeof other);
-    open_world(&other_world, 4);
+    open_other(4);
     run(&other_world, &other, NULL);
     assert_same_search();
-    forget(&other_world, &other);
 }
 
 /* As records in the order in which they speak for all: parts 2, 0, 3, 1. */
 TEST(parts_taken_in_another_order_make_the_same_whole_and_another_cheap_level)
 {
     static const size_t ORDER[PARTS] = {2, 0, 3, 1};
-    memset(&other, 0, sizeof other);
-    open_world(&other_world, 1); /* of which the rows are done in the order of their numbers */
+    open_other(1); /* of which the rows are done in the order of their numbers */
     other_world.problem.order = ORDER;
     run(&other_world, &other, NULL);
     assert_true(other.n_screened > 90 && other.n_finished > 15);
@@ -262,7 +263,6 @@ TEST(parts_taken_in_another_order_make_the_same_whole_and_another_cheap_level)
         mean_of(&other_world, 0, is_screened ? CHEAP : PARTS, parts, f);
         assert_memory_equal(other.Y + i * OBJ, f, sizeof f);
     }
-    forget(&other_world, &other);
 }
 
 /* At the end of a generation, and in the middle of the next one: what was screened is known, its simulations are not. */
@@ -277,11 +277,9 @@ TEST(resumed_anywhere_it_makes_the_same_bytes)
         const size_t later = (m->rows[k + 1] - m->rows[k]) * (k % 2) / 2;
         const SearchStart start = {
             .n = m->rows[k], .n_later = later, .row = world.done.row, .state = m->state[k], .n_state = m->n_state[k]};
-        memset(&other, 0, sizeof other);
-        open_world(&other_world, 1);
+        open_other(1);
         run(&other_world, &other, &start);
         assert_same_search();
-        forget(&other_world, &other);
     }
 }
 
@@ -298,8 +296,7 @@ static int is_finished(const World *w, const Screened *s, size_t i)
 TEST(levels_that_do_not_agree_turn_it_off)
 {
     size_t later = 0, n_lost = 0;
-    memset(&other, 0, sizeof other);
-    open_world(&other_world, 1);
+    open_other(1);
     other_world.is_unrelated = 1;
     other_world.noise = 1.0;
     run(&other_world, &other, NULL);
@@ -310,31 +307,26 @@ TEST(levels_that_do_not_agree_turn_it_off)
     assert_at_most(n_lost, 1);                      /* of the sample, for which no evaluation is left */
     assert_at_most(later, 2 * AHEAD);               /* until the first pairs, asked for behind the sample, are there */
     assert_at_most(EVALS, other.n_evaluations + 1); /* what was screened in vain may leave a part of one */
-    forget(&other_world, &other);
 }
 
 TEST(an_objective_that_is_the_same_for_all_designs_does_not_speak_against_the_cheap_level)
 {
-    memset(&other, 0, sizeof other);
-    open_world(&other_world, 1);
+    open_other(1);
     other_world.is_flat = 1;
     other_world.noise = 0.0;
     run(&other_world, &other, NULL);
     assert_true(other.n_screened > 3 * LEVEL_PAIRS && other.agreement > 0.999);
-    forget(&other_world, &other);
 }
 
 TEST(penalties_whose_squares_overflow_do_not_end_a_search_with_levels)
 {
     static const double PENALTIES[] = {1e160, 1e300, DBL_MAX};
     for (size_t i = 0; i < 3; i++) {
-        memset(&other, 0, sizeof other);
-        open_world(&other_world, 1);
+        open_other(1);
         other_world.penalty = PENALTIES[i];
         other_world.noise = 0.0;
         run(&other_world, &other, NULL);
         assert_less(3 * LEVEL_PAIRS, other.n_screened);
-        forget(&other_world, &other);
     }
 }
 
@@ -377,23 +369,20 @@ static double of_nothing(const double x[])
 
 TEST(what_the_line_between_levels_leaves_is_learned_where_designs_explain_it)
 {
-    open_world(&other_world, 1);
+    open_other(1);
     assert_less(share_left(&other_world, 1, of_region), 0.35);
     assert_less(0.9, share_left(&other_world, 0, of_region));
     assert_less(share_left(&other_world, 1, of_nothing), 1.2);
-    evaluation_table_free(&other_world.done);
 }
 
 TEST(without_a_cheap_level_nothing_is_screened)
 {
-    memset(&other, 0, sizeof other);
-    open_world(&other_world, 1);
+    open_other(1);
     other_world.problem.n_cheap = 0;
     run(&other_world, &other, NULL);
     assert_int_equal(other.n, EVALS);
     assert_int_equal(other.n_screened + other.n_finished, 0);
     assert_int_equal(other_world.n_tasks, EVALS * PARTS);
-    forget(&other_world, &other);
 }
 
 SUITE(set_up, tear_down)

@@ -1,15 +1,8 @@
-#include "base/linalg.h"
 #include <omp.h>
 
-#include "base/random.h"
-#include "base/stat.h"
-#include "functions.h"
 #include "searches.h"
-#include "base/dominance.h"
 #include "base/hypervolume.h"
-#include "moga/constants.h"
 #include "moga/convergence.h"
-#include "bench/textbook.h"
 #include "moga/surrogate.h"
 #include "moga/variation.h"
 
@@ -117,11 +110,22 @@ static int fresh(void **state)
     return 0;
 }
 
+static StopReason searched_here(size_t initial, size_t max_evals)
+{
+    const SearchConfig c = config(initial, max_evals);
+    return run(&here, &c, &seen);
+}
+
+/* A textbook problem with nothing special about it. */
+static StopReason searched(size_t n_var, size_t n_obj, size_t initial, size_t max_evals)
+{
+    world(&here, n_var, n_obj);
+    return searched_here(initial, max_evals);
+}
+
 TEST(three_objectives_beat_a_latin_hypercube_of_the_same_size)
 {
-    world(&here, 8, 3);
-    const SearchConfig c = config(40, 120);
-    assert_int_equal(run(&here, &c, &seen), STOP_EVALUATIONS);
+    assert_int_equal(searched(8, 3, 40, 120), STOP_EVALUATIONS);
     assert_int_equal(seen.n, 120);
     /* the whole front would give 1.5^3 - pi/6; the sample reaches half of what the search does */
     assert_less(0.9 * (3.375 - M_PI / 6), volume(seen.n, 3, seen.Y));
@@ -164,9 +168,7 @@ TEST(a_first_sample_of_four_designs_is_enough)
 
 TEST(seven_objectives_beat_a_latin_hypercube_of_the_same_size)
 {
-    world(&here, 22, 7);
-    const SearchConfig c = config(120, 240);
-    assert_int_equal(run(&here, &c, &seen), STOP_EVALUATIONS);
+    assert_int_equal(searched(22, 7, 120, 240), STOP_EVALUATIONS);
     assert_less(3 * volume_of_hypercube(&here, 240), volume(seen.n, 7, seen.Y));
     size_t count[KIND_COUNT] = {0};
     for (size_t i = 0; i < seen.n; i++) {
@@ -202,9 +204,7 @@ TEST(the_same_seed_gives_the_same_bytes_at_any_thread_count)
 
 TEST(front_flags_equal_a_brute_force_filter)
 {
-    world(&here, 10, 4);
-    const SearchConfig c = config(50, 150);
-    run(&here, &c, &seen);
+    searched(10, 4, 50, 150);
     for (size_t i = 0; i < seen.n; i++) {
         int dominated = 0;
         for (size_t j = 0; j < seen.n; j++)
@@ -217,8 +217,7 @@ TEST(failed_simulations_never_reach_the_front)
 {
     world(&here, 8, 3);
     here.fail_share_percent = 10;
-    const SearchConfig c = config(40, 160);
-    assert_int_equal(run(&here, &c, &seen), STOP_EVALUATIONS);
+    assert_int_equal(searched_here(40, 160), STOP_EVALUATIONS);
     size_t failed = 0;
     for (size_t i = 0; i < seen.n; i++) {
         failed += !seen.ok[i];
@@ -233,8 +232,7 @@ TEST(a_world_where_everything_fails_ends_with_an_empty_front)
 {
     world(&here, 8, 3);
     here.fail_share_percent = 100;
-    const SearchConfig c = config(40, 130);
-    assert_int_equal(run(&here, &c, &seen), STOP_EVALUATIONS);
+    assert_int_equal(searched_here(40, 130), STOP_EVALUATIONS);
     assert_int_equal(seen.n_failed, 130);
     assert_int_equal(seen.n_front, 0);
 }
@@ -242,8 +240,7 @@ TEST(a_world_where_everything_fails_ends_with_an_empty_front)
 TEST(constraints_hold_on_the_front)
 {
     world_with_limits(&here, 8, 3, 1);
-    const SearchConfig c = config(40, 120);
-    run(&here, &c, &seen);
+    searched_here(40, 120);
     size_t feasible = 0;
     for (size_t i = 0; i < seen.n; i++) {
         assert_close(seen.G[i] + 1.0, 1.3 - seen.X[i * 8], 1e-12);
@@ -308,8 +305,7 @@ TEST(a_constraint_beyond_all_bounds_takes_no_part_in_the_surrogate)
 {
     world_with_limits(&here, 8, 3, 1);
     here.has_no_bound = 1;
-    const SearchConfig c = config(40, 120);
-    run(&here, &c, &seen);
+    searched_here(40, 120);
     size_t feasible = 0;
     for (size_t i = 40; i < seen.n; i++)
         feasible += seen.G[i] <= 0.0;
@@ -320,8 +316,7 @@ TEST(a_start_without_a_feasible_design_finds_the_feasible_region)
 {
     world_with_limits(&here, 8, 3, 1);
     here.upper[0] = 0.31; /* feasible: x0 >= 0.3, one thirtieth of the box */
-    const SearchConfig c = config(10, 60);
-    run(&here, &c, &seen);
+    searched_here(10, 60);
     assert_less(5, seen.n_front);
 }
 
@@ -337,8 +332,7 @@ TEST(repaired_and_frozen_variables_are_respected)
     world(&here, 8, 3);
     here.problem.repair = first_not_below_second;
     here.lower[5] = here.upper[5] = 0.25;
-    const SearchConfig c = config(30, 90);
-    run(&here, &c, &seen);
+    searched_here(30, 90);
     for (size_t i = 0; i < seen.n; i++) {
         assert_at_most(seen.X[i * 8 + 1], seen.X[i * 8]);
         assert_same_number(seen.X[i * 8 + 5], 0.25);
@@ -347,21 +341,15 @@ TEST(repaired_and_frozen_variables_are_respected)
 
 TEST(no_budget_is_ever_exceeded)
 {
-    const size_t budgets[] = {1, 7, 40, 41, 53};
-    for (size_t i = 0; i < sizeof budgets / sizeof budgets[0]; i++) {
-        world(&here, 6, 2);
-        const SearchConfig c = config(40, budgets[i]);
-        assert_int_equal(run(&here, &c, &seen), STOP_EVALUATIONS);
-        assert_int_equal(seen.n, budgets[i]);
+    FOR_EACH (size_t, budget, 1, 7, 40, 41, 53) {
+        assert_int_equal(searched(6, 2, 40, *budget), STOP_EVALUATIONS);
+        assert_int_equal(seen.n, *budget);
     }
 }
 
 TEST(every_way_to_stop_is_named)
 {
     SearchConfig c = config(40, 500);
-    world(&here, 6, 2);
-
-    fresh(NULL);
     seen.stop_at_view = 2;
     world(&here, 6, 2);
     assert_int_equal(run(&here, &c, &seen), STOP_ASKED);
@@ -374,7 +362,6 @@ TEST(every_way_to_stop_is_named)
         assert_less(5, strlen(stop_reason_words((StopReason)reason)));
 }
 
-/* With an error limit that nothing exceeds all predictions stand, and still a few are checked in each generation. */
 static double gain_between(const Seen *s, size_t m, const size_t cuts[2], double h[2])
 {
     unsigned char all[SEEN_ROWS];
@@ -387,8 +374,6 @@ static double gain_between(const Seen *s, size_t m, const size_t cuts[2], double
 TEST(a_converged_search_stops_and_has_lost_no_more_than_the_noise_of_hypervolume)
 {
     static Seen stopped, all;
-    memset(&stopped, 0, sizeof stopped);
-    memset(&all, 0, sizeof all);
     SearchConfig c = config(20, 590);
     c.stop_after = 120;
     world(&here, 3, 2);
@@ -406,7 +391,6 @@ TEST(a_converged_search_stops_and_has_lost_no_more_than_the_noise_of_hypervolume
 
 TEST(a_search_that_improves_does_not_stop)
 {
-    memset(&seen, 0, sizeof seen);
     SearchConfig c = config(40, 400);
     c.surrogate = SURROGATE_OFF; /* far from the front for long */
     c.stop_after = 100;
@@ -450,11 +434,16 @@ static double volume_of_ok(const Seen *s, size_t m)
     return volume(n, m, F);
 }
 
+static int succeeds_there(const double x[])
+{
+    return fabs(x[5] - 0.55) > 0.165;
+}
+
 /* The best of DTLZ2 is at x_d = 1/2 for d = 2..9: there, and in a third of the box, evaluations fail. */
 static void fail_in_a_slab(FunctionCall *q, void *user)
 {
     evaluate(q, user);
-    q->ok = fabs(q->x[5] - 0.55) > 0.165;
+    q->ok = succeeds_there(q->x);
 }
 
 TEST(where_a_third_of_the_box_fails_and_the_best_of_it_the_surrogate_is_never_behind)
@@ -481,11 +470,6 @@ TEST(where_a_third_of_the_box_fails_and_the_best_of_it_the_surrogate_is_never_be
 }
 
 enum { CHANCE_DESIGNS = 150, CHANCE_ASKED = 2000 };
-
-static int succeeds_there(const double x[])
-{
-    return fabs(x[5] - 0.55) > 0.165;
-}
 
 static double limit_there(const double x[])
 {
@@ -515,7 +499,7 @@ TEST(chances_are_the_shares_of_designs_that_succeed_and_keep_a_limit)
 {
     OWNED(pareto_archive_free) Archive a;
     Surrogate *s;
-    Population p;
+    OWNED(population_free) Population p;
     OWNED(directions_free) Directions vectors;
     FREED Infill *near;
     world_with_limits(&here, 8, 2, 1);
@@ -545,7 +529,6 @@ TEST(chances_are_the_shares_of_designs_that_succeed_and_keep_a_limit)
     if (!(likely > 300 && likely_good > 0.9 * likely && unlikely > 300 && unlikely_good < 0.1 * unlikely))
         fail_msg("good are %.0f of %.0f likely and %.0f of %.0f unlikely designs", likely_good, likely, unlikely_good,
                  unlikely);
-    population_free(&p);
     surrogate_free(s);
 }
 
@@ -553,8 +536,7 @@ TEST(answers_without_any_pattern_fall_back_to_plain_offspring)
 {
     world(&here, 8, 3);
     here.all_alike_noise = 1;
-    const SearchConfig c = config(60, 150);
-    assert_int_equal(run(&here, &c, &seen), STOP_EVALUATIONS);
+    assert_int_equal(searched_here(60, 150), STOP_EVALUATIONS);
     assert_less(0.05, seen.error);
 }
 
@@ -639,8 +621,7 @@ TEST(a_front_of_a_single_design_still_spends_the_budget)
 {
     world(&here, 3, 2);
     here.function.evaluate = evaluate_agreeing;
-    const SearchConfig c = config(20, 200);
-    assert_int_equal(run(&here, &c, &seen), STOP_EVALUATIONS);
+    assert_int_equal(searched_here(20, 200), STOP_EVALUATIONS);
     assert_int_equal(seen.n_front, 1);
     assert_int_equal(seen.n, 200);
 }
@@ -648,8 +629,7 @@ TEST(a_front_of_a_single_design_still_spends_the_budget)
 TEST(without_a_surrogate_the_front_is_worse)
 {
     SearchConfig c = config(40, 200);
-    world(&here, 12, 3);
-    run(&here, &c, &seen);
+    searched(12, 3, 40, 200);
     const double with = volume(seen.n, 3, seen.Y);
     c.surrogate = SURROGATE_OFF;
     fresh(NULL);
@@ -661,9 +641,7 @@ TEST(without_a_surrogate_the_front_is_worse)
 
 TEST(a_start_of_size_zero_follows_the_number_of_variables)
 {
-    world(&here, 8, 3);
-    SearchConfig c = config(0, 120);
-    run(&here, &c, &seen);
+    searched(8, 3, 0, 120);
     size_t sampled = 0;
     for (size_t i = 0; i < seen.n; i++)
         sampled += seen.kind[i] == KIND_SAMPLED;

@@ -1,21 +1,21 @@
 /* Slopes of results: closed forms where there are some. */
-
-#include "check.h"
 #include "scene_options.h"
+#include "towers.h"
 #include "settings/options.h"
 #include "analysis/sensitivity.h"
 
 enum { FLOORS = 6, N_VAR = FLOORS + 2 };
 
-static void short_scene(Settings *s, double x[N_VAR], double gap)
+static Settings short_scene(double x[N_VAR], double gap)
 {
-    paper_defaults(s);
-    six_floors(&s->building, &s->core);
-    s->motion.stretch = 1;
-    s->sim.duration_s = 8;
-    s->sim.accuracy = ACCURACY_COARSE;
+    Settings s = paper_settings();
+    six_floors(&s.building, &s.core);
+    s.motion.stretch = 1;
+    s.sim.duration_s = 8;
+    s.sim.accuracy = ACCURACY_COARSE;
     for (int j = 0; j < N_VAR; j++)
         x[j] = j < FLOORS ? gap + 0.001 * j : j == FLOORS ? 0.03 : 0.01;
+    return s;
 }
 
 static const Sensitivity *named(const Sensitivity *list, size_t n, const char *name)
@@ -30,11 +30,10 @@ static const Sensitivity *named(const Sensitivity *list, size_t n, const char *n
 /* Of a square tube the mass is quadratic in the thickness, so that the central difference is exact. */
 TEST(the_mass_changes_with_the_thickness_as_the_section_says)
 {
-    Settings s;
     FREED Sensitivity *list;
     size_t n;
     double x[N_VAR], base = 0, top = 0;
-    short_scene(&s, x, 5);
+    Settings s = short_scene(x, 5);
     CHECK_OK(sensitivity_find(&s, x, 1, &list, &n, &err), &err);
     for (int j = 0; j < FLOORS; j++) {
         const double part = j / (FLOORS - 1.0), t = x[FLOORS] + (x[FLOORS + 1] - x[FLOORS]) * part;
@@ -49,11 +48,10 @@ TEST(the_mass_changes_with_the_thickness_as_the_section_says)
 
 TEST(without_contact_only_the_building_matters_and_its_slope_is_that_of_the_building_alone)
 {
-    Settings s;
     FREED Sensitivity *list;
     size_t n;
     double x[N_VAR], j1[2];
-    short_scene(&s, x, 5);
+    Settings s = short_scene(x, 5);
     CHECK_OK(sensitivity_find(&s, x, 3, &list, &n, &err), &err);
     for (int j = 0; j < FLOORS; j++)
         assert_true(list[j].slope[MEASURE_J1] == 0 && list[j].error[MEASURE_J1] == 0);
@@ -62,12 +60,8 @@ TEST(without_contact_only_the_building_matters_and_its_slope_is_that_of_the_buil
     const Sensitivity *damping = named(list, n, "building.damping");
     for (int side = 0; side < 2; side++) {
         Settings other = s;
-        OWNED(problem_close) Problem p;
-        SimResult r;
         other.building.damping.at[0] += (side ? 0.5 : -0.5) * damping->step;
-        CHECK_OK(tower_open(&p, &other, TOWER_SINGLE, 1, &err), &err);
-        CHECK_OK(tower_simulate(&p, 1, &(SimTask){.kind = SCENE_NO_CORE, .x = NULL}, &r, &err), &err);
-        j1[side] = r.j1_m;
+        j1[side] = simulated_as(SCENE_NO_CORE, &other, NULL).j1_m;
     }
     assert_less(damping->slope[MEASURE_J1], 0);
     assert_close(damping->slope[MEASURE_J1], (j1[1] - j1[0]) / damping->step, 1e-6);
@@ -77,11 +71,10 @@ TEST(without_contact_only_the_building_matters_and_its_slope_is_that_of_the_buil
 
 TEST(the_ground_is_a_parameter_where_there_is_one)
 {
-    Settings s;
     Sensitivity *list;
     size_t n;
     double x[N_VAR], rotation[2];
-    short_scene(&s, x, 5);
+    Settings s = short_scene(x, 5);
     CHECK_OK(sensitivity_find(&s, x, 1, &list, &n, &err), &err);
     for (size_t i = 0; i < n; i++)
         assert_string_not_equal(list[i].name, "core.foundation_factor");
@@ -91,14 +84,10 @@ TEST(the_ground_is_a_parameter_where_there_is_one)
     const Sensitivity *ground = named(list, n, "core.foundation_factor");
     for (int side = 0; side < 2; side++) {
         Settings other = s;
-        OWNED(problem_close) Problem p;
-        SimResult r;
         other.sim.forces = FORCES_YES;
         snprintf(other.core.foundation, sizeof other.core.foundation, "rotation=%.17g",
                  1e12 * (1 + (side ? 0.5 : -0.5) * ground->step));
-        CHECK_OK(tower_open(&p, &other, TOWER_SINGLE, 1, &err), &err);
-        CHECK_OK(tower_simulate(&p, 1, &(SimTask){.x = x}, &r, &err), &err);
-        rotation[side] = r.forces.base_rotation_rad;
+        rotation[side] = simulated_as(SCENE_IMPACT, &other, x).forces.base_rotation_rad;
     }
     assert_close(ground->slope[MEASURE_BASE_ROTATION], (rotation[1] - rotation[0]) / ground->step, 1e-6);
     free(list);
@@ -107,17 +96,13 @@ TEST(the_ground_is_a_parameter_where_there_is_one)
 /* Of storeys that do not reach it, the ductility d / y alone changes, by -d / y^2. */
 TEST(the_strength_of_storeys_is_a_parameter_where_they_yield)
 {
-    Settings s;
     FREED Sensitivity *list;
     size_t n;
     double x[N_VAR];
-    SimResult r;
-    OWNED(problem_close) Problem p;
-    short_scene(&s, x, 5);
+    Settings s = short_scene(x, 5);
     s.building.yield_drift = 0.5;
     CHECK_OK(sensitivity_find(&s, x, 1, &list, &n, &err), &err);
-    CHECK_OK(tower_open(&p, &s, TOWER_SINGLE, 1, &err), &err);
-    CHECK_OK(tower_simulate(&p, 1, &(SimTask){.x = x}, &r, &err), &err);
+    const SimResult r = simulated_as(SCENE_IMPACT, &s, x);
     const Sensitivity *strength = named(list, n, "building.yield_drift");
     assert_less(0, r.ductility);
     assert_close(strength->slope[MEASURE_DUCTILITY], -r.ductility / 0.5, 1e-3);
@@ -127,11 +112,10 @@ TEST(the_strength_of_storeys_is_a_parameter_where_they_yield)
 
 TEST(with_contact_the_slopes_are_differences_of_simulations_on_any_number_of_threads)
 {
-    Settings s;
-    Sensitivity *one, *two;
+    FREED Sensitivity *one, *two, *three;
     size_t n, same;
     double x[N_VAR], j1[2];
-    short_scene(&s, x, 0.002);
+    Settings s = short_scene(x, 0.002);
     s.search.threads = 1;
     CHECK_OK(sensitivity_find(&s, x, 2, &one, &n, &err), &err);
     s.search.threads = 2;
@@ -140,21 +124,14 @@ TEST(with_contact_the_slopes_are_differences_of_simulations_on_any_number_of_thr
     for (size_t i = 0; i < n; i++)
         for (int k = 0; k < N_MEASURES; k++)
             assert_true(one[i].slope[k] == two[i].slope[k] || (isnan(one[i].slope[k]) && isnan(two[i].slope[k])));
-    free(two);
-    CHECK_OK(sensitivity_find(&s, x, 1, &two, &n, &err), &err);
+    CHECK_OK(sensitivity_find(&s, x, 1, &three, &n, &err), &err);
     for (int side = 0; side < 2; side++) {
         double changed[N_VAR];
-        OWNED(problem_close) Problem p;
-        SimResult r;
         memcpy(changed, x, sizeof x);
         changed[FLOORS - 1] += (side ? 0.5e-3 : -0.5e-3);
-        CHECK_OK(tower_open(&p, &s, TOWER_SINGLE, 1, &err), &err);
-        CHECK_OK(tower_simulate(&p, 1, &(SimTask){.kind = SCENE_IMPACT, .x = changed}, &r, &err), &err);
-        j1[side] = r.j1_m;
+        j1[side] = simulated_as(SCENE_IMPACT, &s, changed).j1_m;
     }
-    assert_close(two[FLOORS - 1].slope[MEASURE_J1], (j1[1] - j1[0]) / 1e-3, 1e-9);
-    free(one);
-    free(two);
+    assert_close(three[FLOORS - 1].slope[MEASURE_J1], (j1[1] - j1[0]) / 1e-3, 1e-9);
 }
 
 SUITE(NULL, NULL)

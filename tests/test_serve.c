@@ -39,13 +39,12 @@ static void take_address(const char *url)
  * it. */
 static void serve_with(const char *folder, int files_max)
 {
-    char path[PATH_MAX], most[16], *text = NULL, *at = NULL;
+    char *text = NULL, *at = NULL;
     sigset_t ends;
     posix_spawn_file_actions_t files;
     posix_spawnattr_t signals;
     char script[] = "ulimit -n $2; exec \"$0\" serve \"$1\"", shell[] = "/bin/sh";
-    snprintf(most, sizeof most, "%d", files_max);
-    char *words[] = {shell, "-c", script, getenv("IMTET"), path_of(folder, path), most, NULL};
+    char *words[] = {shell, "-c", script, getenv("IMTET"), there(folder), brief("%d", files_max), NULL};
     posix_spawn_file_actions_init(&files);
     posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, path_of("served", server.said),
                                      O_WRONLY | O_CREAT | O_TRUNC, 0600);
@@ -77,8 +76,7 @@ static void serve(const char *folder)
 static Served serve_here(const char *folder)
 {
     const Served before = server;
-    char path[PATH_MAX];
-    const ServeOptions options = {.folder = path_of(folder, path)};
+    const ServeOptions options = {.folder = there(folder)};
     CHECK_OK(serve_open(&server.own, &options, &err), &err);
     take_address(serve_url(server.own));
     return before;
@@ -160,9 +158,7 @@ static char *ask(const char *method, const char *path, const char *headers, cons
 
 static char *post(const char *path, const char *body)
 {
-    char length[64];
-    snprintf(length, sizeof length, "Content-Length: %zu\r\n", strlen(body));
-    return ask("POST", path, length, body);
+    return ask("POST", path, brief("Content-Length: %zu\r\n", strlen(body)), body);
 }
 
 static void expect_code(int wanted, const char *method, const char *path, const char *headers)
@@ -214,38 +210,22 @@ TEST(a_request_without_the_token_is_refused)
 
 TEST(a_foreign_host_or_origin_is_refused)
 {
-    static const char *const REFUSED[] = {"Host: evil.example\r\n",
-                                          "Host: 127.0.0.1.evil.example\r\n",
-                                          "Host: localhost:80x\r\n",
-                                          "Host: 127.0.0.2\r\n",
-                                          "Host: 127.0.0.1\r\nOrigin: http://evil.example\r\n",
-                                          "Host: 127.0.0.1\r\nOrigin: null\r\n",
-                                          "Host: 127.0.0.1\r\nOrigin: https://127.0.0.1\r\n",
-                                          "Host: 127.0.0.1:8000\r\nOrigin: http://127.0.0.1:8001\r\n"};
-    for (size_t i = 0; i < sizeof REFUSED / sizeof REFUSED[0]; i++)
-        expect_code(403, "GET", "/%T/0/front", REFUSED[i]);
+    FOR_EACH (const char *, refused, "Host: evil.example\r\n", "Host: 127.0.0.1.evil.example\r\n",
+              "Host: localhost:80x\r\n", "Host: 127.0.0.2\r\n", "Host: 127.0.0.1\r\nOrigin: http://evil.example\r\n",
+              "Host: 127.0.0.1\r\nOrigin: null\r\n", "Host: 127.0.0.1\r\nOrigin: https://127.0.0.1\r\n",
+              "Host: 127.0.0.1:8000\r\nOrigin: http://127.0.0.1:8001\r\n")
+        expect_code(403, "GET", "/%T/0/front", *refused);
     expect_code(200, "GET", "/%T/0/front", "Host: localhost:1234\r\n");
     expect_code(200, "GET", "/%T/0/front", "Host: 127.0.0.1:8000\r\nOrigin: http://127.0.0.1:8000\r\n");
 }
 
 TEST(no_request_leads_to_a_file)
 {
-    static const char *const PATHS[] = {"/%T/../../etc/passwd",
-                                        "/%T/0/../../../etc/passwd",
-                                        "/%T/%2e%2e/%2e%2e/etc/passwd",
-                                        "/%T/0/..%2f..%2frun.sqlite",
-                                        "/%T/0/run.sqlite",
-                                        "/%T//etc/passwd",
-                                        "/%T/0/design/1/../2",
-                                        "/%T/0/design/-1",
-                                        "/%T/0/design/99999999999999999999",
-                                        "/%T/99/",
-                                        "/%T/0/front/1",
-                                        "/%T/0/runs",
-                                        "/%T/front",
-                                        "/%T/0/%00"};
-    for (size_t i = 0; i < sizeof PATHS / sizeof PATHS[0]; i++)
-        expect_code(404, "GET", PATHS[i], "");
+    FOR_EACH (const char *, path, "/%T/../../etc/passwd", "/%T/0/../../../etc/passwd", "/%T/%2e%2e/%2e%2e/etc/passwd",
+              "/%T/0/..%2f..%2frun.sqlite", "/%T/0/run.sqlite", "/%T//etc/passwd", "/%T/0/design/1/../2",
+              "/%T/0/design/-1", "/%T/0/design/99999999999999999999", "/%T/99/", "/%T/0/front/1", "/%T/0/runs",
+              "/%T/front", "/%T/0/%00")
+        expect_code(404, "GET", *path, "");
 }
 
 static void expect_header(const char *wanted, const char *method, const char *path)
@@ -257,14 +237,12 @@ static void expect_header(const char *wanted, const char *method, const char *pa
 
 TEST(every_address_says_which_methods_it_knows)
 {
-    static const char *const METHODS[] = {"PUT", "DELETE", "OPTIONS", "PATCH", "TRACE"};
-    static const char *const READ_ONLY[] = {"/%T/",         "/%T/runs",       "/%T/0/",          "/%T/0/front",
-                                            "/%T/0/events", "/%T/0/design/1", "/%T/0/against/1", "/%T/0/scene"};
-    for (size_t i = 0; i < sizeof METHODS / sizeof METHODS[0]; i++)
-        expect_code(405, METHODS[i], "/%T/0/front", "");
-    for (size_t i = 0; i < sizeof READ_ONLY / sizeof READ_ONLY[0]; i++) {
-        expect_code(405, "POST", READ_ONLY[i], "Content-Length: 0\r\n");
-        expect_header("\r\nAllow: GET, HEAD\r\n", "POST", READ_ONLY[i]);
+    FOR_EACH (const char *, method, "PUT", "DELETE", "OPTIONS", "PATCH", "TRACE")
+        expect_code(405, *method, "/%T/0/front", "");
+    FOR_EACH (const char *, read_only, "/%T/", "/%T/runs", "/%T/0/", "/%T/0/front", "/%T/0/events", "/%T/0/design/1",
+              "/%T/0/against/1", "/%T/0/scene") {
+        expect_code(405, "POST", *read_only, "Content-Length: 0\r\n");
+        expect_header("\r\nAllow: GET, HEAD\r\n", "POST", *read_only);
     }
     expect_header("\r\nAllow: GET, HEAD, POST\r\n", "PUT", "/%T/0/notes");
     expect_code(400, "POST", "/%T/0/notes", "Content-Length: 0\r\n");
@@ -275,21 +253,17 @@ TEST(every_address_says_which_methods_it_knows)
 
 TEST(head_is_get_without_a_body)
 {
-    static const char *const PATHS[] = {"/%T/0/", "/%T/runs", "/%T/0/events"};
-    for (size_t i = 0; i < sizeof PATHS / sizeof PATHS[0]; i++) {
-        char *answer = ask("HEAD", PATHS[i], "", ""), *body = strstr(answer, "\r\n\r\n");
+    FOR_EACH (const char *, path, "/%T/0/", "/%T/runs", "/%T/0/events") {
+        FREED char *answer = ask("HEAD", *path, "", "");
         assert_int_equal(code_of(answer), 200);
-        assert_true(body && !body[4]);
-        free(answer);
+        assert_string_equal(strstr(answer, "\r\n\r\n"), "\r\n\r\n");
     }
     expect_code(403, "HEAD", "/0/", "");
 }
 
 TEST(an_address_without_its_last_slash_leads_to_the_one_with_it)
 {
-    char wanted[TOKEN_TEXT + 32];
-    snprintf(wanted, sizeof wanted, "\r\nLocation: %s/\r\n", server.token);
-    expect_header(wanted, "GET", "/%T");
+    expect_header(brief("\r\nLocation: %s/\r\n", server.token), "GET", "/%T");
     expect_header("\r\nLocation: 0/\r\n", "GET", "/%T/0");
     expect_code(302, "GET", "/%T/0", "");
     expect_code(403, "GET", "/%T0", "Origin: http://evil.example\r\n");
@@ -300,21 +274,18 @@ TEST(an_address_without_its_last_slash_leads_to_the_one_with_it)
 TEST(what_is_too_large_is_not_read)
 {
     enum { MUCH = 1 << 20 };
-    FREED char *much = malloc(MUCH + 1), *headers = malloc(MUCH + 64);
+    FREED char *much = malloc(MUCH + 1);
     memset(much, 'x', MUCH);
     much[MUCH] = 0;
     expect_code(413, "POST", "/%T/0/notes", "Content-Length: 1000000000\r\n");
     expect_code(413, "GET", "/%T/0/front", "Content-Length: 5\r\n");
     int fd = dial();
-    snprintf(headers, MUCH + 64, "GET /%s/0/ HTTP/1.1\r\nHost: localhost\r\nX: %s\r\n\r\n", server.token, much);
-    say(fd, headers);
-    char *answer = hear(fd);
+    FREED char *long_one = formatted("GET /%s/0/ HTTP/1.1\r\nHost: localhost\r\nX: %s\r\n\r\n", server.token, much);
+    say(fd, long_one);
+    FREED char *answer = hear(fd);
     assert_true(code_of(answer) == 0 || code_of(answer) >= 400);
-    free(answer);
     fd = dial();
-    snprintf(headers, MUCH + 64, "POST /%s/0/notes HTTP/1.1\r\nHost: localhost\r\nTransfer-Encoding: chunked\r\n\r\n",
-             server.token);
-    say(fd, headers);
+    say(fd, brief("POST /%s/0/notes HTTP/1.1\r\nHost: localhost\r\nTransfer-Encoding: chunked\r\n\r\n", server.token));
     for (int i = 0; i < 40; i++) { /* of a thousand bytes each: 8 more than are allowed */
         say(fd, "3e8\r\n");
         say(fd, much + MUCH - 1000);
@@ -322,9 +293,8 @@ TEST(what_is_too_large_is_not_read)
     }
     say(fd, "0\r\n\r\n");
     shutdown(fd, SHUT_WR);
-    answer = hear(fd);
-    assert_int_equal(code_of(answer), 413);
-    free(answer);
+    FREED char *refusal = hear(fd);
+    assert_int_equal(code_of(refusal), 413);
     expect_code(200, "GET", "/%T/0/front", "");
 }
 
@@ -359,11 +329,9 @@ TEST(a_slow_flood_leaves_others_answered)
 
 static size_t threads_of_server(void)
 {
-    char path[64], line[256];
+    char line[256];
     size_t n = 0;
-    snprintf(path, sizeof path, "/proc/%d/status", (int)server.pid);
-    FILE *f = fopen(path, "r");
-    assert_non_null(f);
+    FILE *f = opened(brief("/proc/%d/status", (int)server.pid), "r");
     while (fgets(line, sizeof line, f))
         sscanf(line, "Threads: %zu", &n);
     fclose(f);
@@ -391,11 +359,8 @@ TEST(a_thousand_connections_leave_room_for_one_that_asks)
 
 static double processor_s(void)
 {
-    char path[64];
     long user, kernel;
-    snprintf(path, sizeof path, "/proc/%d/stat", (int)server.pid);
-    FILE *f = fopen(path, "r");
-    assert_non_null(f);
+    FILE *f = opened(brief("/proc/%d/stat", (int)server.pid), "r");
     assert_int_equal(fscanf(f, "%*d (%*[^)]) %*c %*d %*d %*d %*d %*d %*u %*u %*u %*u %*u %ld %ld", &user, &kernel), 2);
     fclose(f);
     return (double)(user + kernel) / (double)sysconf(_SC_CLK_TCK);
@@ -457,17 +422,15 @@ TEST(two_runs_are_measured_in_one_box)
         assert_true(json_equal(one, json_array_get(json_object_get(again, "runs"), 1 - r)));
     }
     assert_int_equal(json_array_size(json_object_get(both, "differences")), 0); /* another seed */
-    json_t *others = ask_json("/%T/0/against/3"), *differs = json_object_get(others, "differences"), *key;
+    json_auto_t *others = ask_json("/%T/0/against/3"), *three = ask_json("/%T/0/against/1,3");
+    json_t *differs = json_object_get(others, "differences"), *runs = json_object_get(three, "runs"), *key;
     size_t i, n_records = 0;
     json_array_foreach(differs, i, key) n_records += strcmp(json_string_value(key), "motion.records") == 0;
     assert_int_equal(n_records, 1);
-    json_t *three = ask_json("/%T/0/against/1,3"), *runs = json_object_get(three, "runs");
     assert_int_equal(json_array_size(runs), 3);
     assert_true(json_equal(json_object_get(json_array_get(runs, 1), "f"),
                            json_object_get(json_array_get(json_object_get(both, "runs"), 1), "f")));
     assert_true(json_equal(json_object_get(three, "differences"), differs));
-    json_decref(three);
-    json_decref(others);
     expect_code(404, "GET", "/%T/0/against/1,", "");
     expect_code(404, "GET", "/%T/0,1/front", "");
     expect_code(404, "GET", "/%T/0/against/1,1,1,1", "");
@@ -480,13 +443,13 @@ TEST(two_runs_are_measured_in_one_box)
 
 TEST(the_page_is_the_report_with_live_parts)
 {
-    char *page = ask("GET", "/%T/0/", "", ""), *policy = strstr(page, "Content-Security-Policy\" content=\"");
+    FREED char *page = ask("GET", "/%T/0/", "", "");
+    char *policy = strstr(page, "Content-Security-Policy\" content=\"");
     assert_non_null(policy);
-    assert_non_null(strstr(policy, "connect-src 'self'"));
+    assert_words(policy, "connect-src 'self'");
+    assert_null(strstr(page, server.token));
     *strchr(policy + 40, '"') = 0;
     assert_words(policy, "!unsafe-inline", "!'unsafe-eval");
-    assert_null(strstr(page, server.token));
-    free(page);
     FREED char *list = output_of("status @/runs --json");
     assert_non_null(strstr(list, "\"finished\""));
 }
@@ -496,23 +459,21 @@ TEST(the_page_is_the_report_with_live_parts)
 /* The run is halted until every page has been told of it. */
 TEST(a_run_has_the_same_bytes_with_ten_pages_looking_on)
 {
-    char text[256], path[PATH_MAX], begun[PATH_MAX + 16], byte;
+    char byte;
     int fd[10];
-    char *words[] = {"sh", "-c", NULL, NULL};
-    assert_less(
-        0, asprintf(&words[2], "exec '%s' " SMALL "--out '%s/watched' >/dev/null 2>&1", getenv("IMTET"), place.folder));
+    FREED char *command =
+        formatted("exec '%s' " SMALL "--out '%s/watched' >/dev/null 2>&1", getenv("IMTET"), place.folder);
+    char *words[] = {"sh", "-c", command, NULL};
     const Served before = server;
     pid_t pid;
     assert_int_equal(posix_spawnp(&pid, "sh", NULL, NULL, words, environ), 0);
-    snprintf(begun, sizeof begun, "%s/settings.ini", path_of("watched", path));
-    for (int i = 0; i < 6000 && access(begun, F_OK) != 0; i++)
+    for (int i = 0; i < 6000 && access(brief("%s/settings.ini", there("watched")), F_OK) != 0; i++)
         rest(0.01);
     kill(pid, SIGSTOP);
     serve("watched");
-    snprintf(text, sizeof text, "GET /%s/0/events HTTP/1.1\r\nHost: localhost\r\n\r\n", server.token);
     for (int i = 0; i < 10; i++) {
         fd[i] = dial();
-        say(fd[i], text);
+        say(fd[i], brief("GET /%s/0/events HTTP/1.1\r\nHost: localhost\r\n\r\n", server.token));
     }
     for (int i = 0; i < 10; i++)
         assert_int_equal(recv(fd[i], &byte, 1, MSG_PEEK), 1);
@@ -530,18 +491,14 @@ TEST(a_run_has_the_same_bytes_with_ten_pages_looking_on)
         assert_non_null(strstr(heard, "\"state\":\"running\""));
     }
     assert_same_run("runs/a", "watched");
-    free(words[2]);
     server = before;
 }
 
 static char *sums(void)
 {
-    char command[512];
-    snprintf(command, sizeof command,
-             "cd '%s/runs' && find . -type f ! -name '*-shm' ! -name '*-wal' | sort | xargs sha256sum > ../sums && ls "
-             "-R > ../names && cat ../names ../sums > ../all",
-             place.folder);
-    assert_int_equal(system(command), 0);
+    expect_shell("cd '%s/runs' && find . -type f ! -name '*-shm' ! -name '*-wal' | sort | xargs sha256sum > ../sums && "
+                 "ls -R > ../names && cat ../names ../sums > ../all",
+                 place.folder);
     return read_in_place("all");
 }
 
@@ -549,9 +506,7 @@ TEST(nothing_of_a_run_is_written)
 {
     FREED char *before = sums();
     OWNED(table_free) Table front = table_of("runs/a/front.csv");
-    char path[64];
-    snprintf(path, sizeof path, "/%%T/0/design/%.0f", front.values[0]);
-    json_auto_t *design = ask_json(path);
+    json_auto_t *design = ask_json(brief("/%%T/0/design/%.0f", front.values[0]));
     assert_same_number(json_integer_value(json_object_get(design, "id")), (json_int_t)front.values[0]);
     json_decref(ask_json("/%T/runs"));
     FREED char *after = sums();
@@ -568,48 +523,35 @@ TEST(notes_are_of_designs_of_the_run_and_lie_beside_it)
 {
     OWNED(table_free) Table front = table_of("runs/b/front.csv");
     const int id = (int)front.values[0];
-    char key[24], path[PATH_MAX];
-    snprintf(key, sizeof key, "%d", id);
-    json_t *notes = post_json("/%T/1/notes", json_pack("{s:i, s:s}", "id", id, "text", "<b>good</b>"));
+    json_auto_t *notes = post_json("/%T/1/notes", json_pack("{s:i, s:s}", "id", id, "text", "<b>good</b>"));
     json_auto_t *again = ask_json("/%T/1/notes");
-    assert_string_equal(json_string_value(json_object_get(notes, key)), "<b>good</b>");
+    assert_string_equal(json_string_value(json_object_get(notes, brief("%d", id))), "<b>good</b>");
     assert_true(json_equal(notes, again));
-    json_decref(notes);
-    char *page = ask("GET", "/%T/1/", "", "");
-    assert_non_null(strstr(page, "good"));
-    assert_null(strstr(page, "<b>good")); /* no markup of a note is the page's */
-    free(page);
+    FREED char *page = ask("GET", "/%T/1/", "", "");
+    assert_words(page, "good", "!<b>good"); /* no markup of a note is the page's */
     refuse_note(404, "{\"id\": 987654, \"text\": \"none\"}");
     refuse_note(400, "{\"id\": \"knee\", \"text\": \"none\"}");
-    notes = post_json("/%T/1/notes", json_pack("{s:i, s:s}", "id", id, "text", ""));
-    assert_int_equal(json_object_size(notes), 0);
-    json_decref(notes);
+    json_auto_t *none = post_json("/%T/1/notes", json_pack("{s:i, s:s}", "id", id, "text", ""));
+    assert_int_equal(json_object_size(none), 0);
     write_in_place("runs/b/notes.json", "[1]"); /* by hand, and wrong: stays as it is */
     expect_code(400, "GET", "/%T/1/notes", "");
-    char wanted[64];
-    snprintf(wanted, sizeof wanted, "{\"id\": %d, \"text\": \"other\"}", id);
-    refuse_note(400, wanted);
-    page = ask("GET", "/%T/1/", "", "");
-    assert_int_equal(code_of(page), 200);
-    assert_non_null(strstr(page, "notes.json:1: is no object of notes"));
-    free(page);
+    refuse_note(400, brief("{\"id\": %d, \"text\": \"other\"}", id));
+    FREED char *wrong = ask("GET", "/%T/1/", "", "");
+    assert_words(wrong, "HTTP/1.1 200", "notes.json:1: is no object of notes");
     FREED char *kept = read_in_place("runs/b/notes.json");
     assert_string_equal(kept, "[1]");
-    assert_int_equal(unlink(path_of("runs/b/notes.json", path)), 0);
+    assert_int_equal(unlink(there("runs/b/notes.json")), 0);
 }
 
 static void copy(const char *from, const char *to)
 {
-    char command[512];
-    snprintf(command, sizeof command, "cd '%s' && mkdir -p odd && rm -rf '%s' && cp -r '%s' '%s'", place.folder, to,
-             from, to);
-    assert_int_equal(system(command), 0);
+    expect_shell("cd '%s' && mkdir -p odd && rm -rf '%s' && cp -r '%s' '%s'", place.folder, to, from, to);
 }
 
 /* Resumed, a run that has got a design of a page does what it would have done without it. */
 TEST(a_kept_design_is_of_the_run_and_never_of_its_search)
 {
-    char *rows[2], command[512];
+    char *rows[2];
     OWNED(table_free) Table front = table_of("runs/a/front.csv");
     json_t *x = json_array();
     for (size_t j = 0; j < 22; j++)
@@ -620,13 +562,10 @@ TEST(a_kept_design_is_of_the_run_and_never_of_its_search)
     json_decref(post_json("/%T/0/kept", json_pack("{s:o}", "x", x)));
     end_here(before);
     for (int i = 0; i < 2; i++) {
-        snprintf(command, sizeof command, "optimize @/odd/%d/settings.ini --max-evals 70 --out @/odd/%d", i, i);
-        expect(0, "", command);
-        snprintf(command, sizeof command,
-                 "cd '%s' && '%s' export odd/%d --all --csv all && grep -c ',kept,' all | grep -qx %d && grep -v "
-                 "',kept,' all | cut -d, -f2,4- > rows && rm -r odd/%d",
-                 place.folder, getenv("IMTET"), i, i, i);
-        assert_int_equal(system(command), 0);
+        expect(0, "", brief("optimize @/odd/%d/settings.ini --max-evals 70 --out @/odd/%d", i, i));
+        expect_shell("cd '%s' && '%s' export odd/%d --all --csv all && grep -c ',kept,' all | grep -qx %d && grep -v "
+                     "',kept,' all | cut -d, -f2,4- > rows && rm -r odd/%d",
+                     place.folder, getenv("IMTET"), i, i, i);
         rows[i] = read_in_place("rows");
     }
     assert_string_equal(rows[0], rows[1]);
@@ -659,10 +598,10 @@ TEST(a_run_that_cannot_be_read_holds_up_no_listing)
 /* The state of the one run that is served, as all are listed; to be released. */
 static json_t *state_now(char state[32])
 {
-    json_t *runs = ask_json("/%T/runs"), *run = json_incref(json_array_get(runs, 0));
+    json_auto_t *runs = ask_json("/%T/runs");
+    json_t *run = json_array_get(runs, 0);
     snprintf(state, 32, "%s", json_string_value(json_object_get(run, "state")));
-    json_decref(runs);
-    return run;
+    return json_incref(run);
 }
 
 TEST(a_run_that_is_gone_is_said_to_be_unreadable_beside_its_last_numbers)
@@ -670,11 +609,9 @@ TEST(a_run_that_is_gone_is_said_to_be_unreadable_beside_its_last_numbers)
     char word[32];
     copy("runs/a", "odd/gone");
     const Served before = serve_here("odd/gone");
-    json_t *was = state_now(word), *is = NULL;
+    json_auto_t *was = state_now(word), *is = NULL;
     assert_string_equal(word, "finished");
-    char path[PATH_MAX], command[PATH_MAX + 16];
-    snprintf(command, sizeof command, "rm -r '%s'", path_of("odd/gone", path));
-    assert_int_equal(system(command), 0);
+    expect_shell("rm -r '%s'", there("odd/gone"));
     for (int i = 0; i < 600 && strcmp(word, "unreadable") != 0; i++) {
         rest(0.05);
         json_decref(is);
@@ -684,8 +621,6 @@ TEST(a_run_that_is_gone_is_said_to_be_unreadable_beside_its_last_numbers)
     assert_non_null(strstr(json_string_value(json_object_get(is, "reason")), "gone"));
     assert_true(json_equal(json_object_get(was, "front"), json_object_get(is, "front")));
     expect_code(200, "GET", "/%T/0/front", "");
-    json_decref(was);
-    json_decref(is);
     end_here(before);
 }
 
@@ -694,41 +629,35 @@ TEST(a_run_made_anew_in_the_place_of_another_is_served_as_it_is_now)
 {
     copy("runs/a", "odd/a");
     const Served before = serve_here("odd/a");
-    json_t *bounds = ask_json("/%T/0/scene");
+    json_auto_t *bounds = ask_json("/%T/0/scene");
     assert_int_equal(json_integer_value(json_object_get(bounds, "simulations")), 1);
-    json_decref(bounds);
     copy("runs/d", "odd/a");
     OWNED(table_free) Table front = table_of("runs/d/front.csv");
-    json_t *now;
     size_t n = 0;
     for (int i = 0; i < 600 && n != front.n_rows; i++) { /* until it is read again */
         rest(0.05);
-        now = ask_json("/%T/0/front");
+        json_auto_t *now = ask_json("/%T/0/front");
         n = json_array_size(json_object_get(now, "ids"));
-        json_decref(now);
     }
     assert_int_equal(n, front.n_rows);
-    bounds = ask_json("/%T/0/scene");
-    assert_in_range(json_integer_value(json_object_get(bounds, "simulations")), 2, 100);
-    json_decref(bounds);
+    json_auto_t *anew = ask_json("/%T/0/scene");
+    assert_in_range(json_integer_value(json_object_get(anew, "simulations")), 2, 100);
     end_here(before);
 }
 
 /* Nothing changes in its folder: a later version is one that was read again because the first was released. */
 TEST(a_run_that_is_not_asked_for_any_more_is_released)
 {
-    char path[PATH_MAX];
     Watch *w;
     View first, again, kept;
     const RecordPaths moved = {0};
-    CHECK_OK(watch_open(&w, path_of("runs/a", path), &moved, &err), &err);
+    CHECK_OK(watch_open(&w, there("runs/a"), &moved, &err), &err);
     CHECK_OK(watch_take(w, 0, 0.1, &first, &err), &err);
     CHECK_OK(watch_take(w, 0, 0.1, &again, &err), &err);
     assert_ptr_equal(first.snapshot, again.snapshot);
     watch_give(&again);
     again = first;
-    for (int i = 0; i < 200 && again.version == first.version;
-         i++) { /* until the watch has looked for what is not asked for */
+    for (int i = 0; i < 200 && again.version == first.version; i++) { /* until the watch has looked for the unasked */
         rest(0.3);
         CHECK_OK(watch_take(w, 0, 0.1, &again, &err), &err);
         if (again.version == first.version)
@@ -751,19 +680,17 @@ TEST(a_run_that_is_not_asked_for_any_more_is_released)
 
 TEST(what_cannot_be_served_is_said)
 {
-    char arguments[128];
     expect(66, "no-such-run", "serve no-such-run");
     expect(66, "is no run, and holds none", "serve docs");
     expect(2, "--port", "serve @/runs/a --port 0");
-    snprintf(arguments, sizeof arguments, "serve @/runs/a --port %d", server.port);
-    expect(74, "no server", arguments);
+    expect(74, "no server", brief("serve @/runs/a --port %d", server.port));
 }
 
 TEST(ctrl_c_ends_it_while_pages_look_on)
 {
-    char text[256], byte;
+    char byte;
     int fd[4];
-    snprintf(text, sizeof text, "GET /%s/0/events HTTP/1.1\r\nHost: localhost\r\n\r\n", server.token);
+    FREED char *text = formatted("GET /%s/0/events HTTP/1.1\r\nHost: localhost\r\n\r\n", server.token);
     for (int i = 0; i < 4; i++) {
         fd[i] = dial();
         say(fd[i], i < 3 ? text : "GET /");
@@ -792,18 +719,15 @@ TEST(ctrl_c_does_not_wait_for_the_questions_in_the_queue)
     wait_end(pid);
     int fd[QUESTIONS];
     serve("long");
-    json_t *front = ask_json("/%T/0/front"), *ids = json_object_get(front, "ids");
+    json_auto_t *front = ask_json("/%T/0/front");
+    json_t *ids = json_object_get(front, "ids");
     const double before_one = processor_s();
     assert_true(json_array_size(ids) >= 2);
-    char path[64], *text = NULL;
-    snprintf(path, sizeof path, "/%%T/0/design/%lld", json_integer_value(json_array_get(ids, 0)));
-    json_decref(ask_json(path));
+    json_decref(ask_json(brief("/%%T/0/design/%lld", json_integer_value(json_array_get(ids, 0)))));
     const double before_all = processor_s(), one = before_all - before_one;
     for (int i = 0; i < QUESTIONS; i++) {
-        assert_less(0, asprintf(&text, "GET /%s/0/design/%d HTTP/1.1\r\nHost: localhost\r\n\r\n", server.token, i + 1));
         fd[i] = dial();
-        say(fd[i], text);
-        free(text);
+        say(fd[i], brief("GET /%s/0/design/%d HTTP/1.1\r\nHost: localhost\r\n\r\n", server.token, i + 1));
     }
     while (processor_s() - before_all < 0.2 * one) /* until it is at work */
         rest(0.02);
@@ -815,7 +739,6 @@ TEST(ctrl_c_does_not_wait_for_the_questions_in_the_queue)
     assert_less(seconds_of(&used) - others - before_all, 0.5 * QUESTIONS * one);
     for (int i = 0; i < QUESTIONS; i++)
         close(fd[i]);
-    json_decref(front);
     server = before;
 }
 
@@ -824,15 +747,12 @@ static int begin(void **state)
     Said said;
     if (prepare(state) != 0)
         return -1;
-    static const char *const RUNS[] = {
-        "--out @/runs/a", "--out @/runs/b --set search.seed=2", "--out @/runs/c " DTLZ2(4, 2),
-        "--out @/runs/d --set design.step_thickness_m=0.01,0.02,0.03 --set search.max_evals=24 --set sim.duration_s=12 "
-        "--set search.initial=16 --set "
-        "search.population=8 --set sim.replicates=2 --set search.fidelity=replicates --set sim.gap_tolerance_m=0.003 "
-        "--set sim.uncertain=restitution=0.05 --set motion.records=builtin:elcentro-like --set motion.pga_g=0 --set "
-        "motion.factor=0.5"};
-    for (size_t i = 0; i < sizeof RUNS / sizeof RUNS[0]; i++) {
-        run(&said, SMALL "%s", RUNS[i]);
+    FOR_EACH (const char *, each, "--out @/runs/a", "--out @/runs/b --set search.seed=2", "--out @/runs/c " DTLZ2(4, 2),
+              "--out @/runs/d --set design.step_thickness_m=0.01,0.02,0.03 --set search.max_evals=24 --set "
+              "sim.duration_s=12 --set search.initial=16 --set search.population=8 --set sim.replicates=2 --set "
+              "search.fidelity=replicates --set sim.gap_tolerance_m=0.003 --set sim.uncertain=restitution=0.05 --set "
+              "motion.records=builtin:elcentro-like --set motion.pga_g=0 --set motion.factor=0.5") {
+        run(&said, SMALL "%s", *each);
         if (said.code != 0)
             print_error("%s", said.err);
         forget(&said);

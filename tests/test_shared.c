@@ -4,8 +4,6 @@
 
 #include <sys/vfs.h>
 
-#include "study/study.h"
-
 static unsigned file_system;
 
 int __real_statfs(const char *path, struct statfs *about);
@@ -57,8 +55,7 @@ static int ended_well(pid_t pid)
 
 static int is_there(const char *name)
 {
-    char path[PATH_MAX];
-    return access(path_of(name, path), F_OK) == 0;
+    return access(there(name), F_OK) == 0;
 }
 
 /* A run in which nothing was evaluated is begun again. */
@@ -76,20 +73,18 @@ static void finish_alone(void)
 
 TEST(every_such_file_system_gets_a_rollback_journal_and_no_other_does)
 {
-    static const unsigned KINDS[] = {0x6969,     0x0bd00bd0, 0x47504653, 0x00c36400,
-                                     0x19830326, 0xff534d42, 0xfe534d42, 0xef53};
     char path[PATH_MAX];
     path_of("one.sqlite", path);
-    for (size_t i = 0; i < sizeof KINDS / sizeof KINDS[0]; i++) {
+    FOR_EACH (unsigned, kind, 0x6969, 0x0bd00bd0, 0x47504653, 0x00c36400, 0x19830326, 0xff534d42, 0xfe534d42, 0xef53) {
         Database *d;
         unlink(path);
-        file_system = KINDS[i];
+        file_system = *kind;
         CHECK_OK(database_create(&d, path, &err), &err);
         CHECK_OK(database_do(d, &err, "CREATE TABLE t (x)", ""), &err);
         database_close(d);
         CHECK_OK(database_open(&d, path, DATABASE_WRITE, &err), &err);
         CHECK_OK(database_do(d, &err, "INSERT INTO t VALUES (1)", ""), &err);
-        assert_int_equal(is_there("one.sqlite-wal"), KINDS[i] == 0xef53);
+        assert_int_equal(is_there("one.sqlite-wal"), *kind == 0xef53);
         database_close(d);
     }
     file_system = 0;

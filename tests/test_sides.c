@@ -1,12 +1,8 @@
 /* Gaps of which the two sides differ: a single mass against closed forms, the tower against its own mirror image. */
-
-#include "base/units.h"
 #include "bench/stability/bob.h"
 #include "evaluate/replicates.h"
 #include "program.h"
 #include "scene_options.h"
-#include "sim/engine.h"
-#include "sim/sim.h"
 
 /* -- one mass ------------------------------------------------------------------------------------------------------ */
 
@@ -24,7 +20,7 @@ static SimResult push(Engine engine, double omega, double right, double left, do
     CHECK_OK(model_set_gaps(&model, &right, &left, &err), &err);
     const EngineOptions o = {.duration = duration, .accuracy = ACCURACY_FINE, .onsets = log};
     CHECK_OK(engine_entry(engine)->run(&model, &motion, &o, &r, &err), &err);
-    assert_int_equal(r.outcome, RUN_OK);
+    assert_ran(&r);
     return r;
 }
 
@@ -72,46 +68,31 @@ TEST(an_oscillator_at_a_stop_has_twice_its_frequency)
 static SimResult tower(GapSides sides, Engine engine, double sign, const double x[])
 {
     SceneOptions o = scene_defaults();
-    OWNED(motion_free) Motion motion;
-    Scene *scene;
-    SimWorker *worker;
-    SimResult r;
     o.design.gap_sides = sides;
     o.sim.engine = engine;
     o.sim.duration_s = 18;
     o.sim.forces = FORCES_YES;
-    CHECK_OK(motion_load(&motion, "builtin:kobe-like", UNIT_FROM_FILE, &err), &err);
-    CHECK_OK(motion_prepare(&motion, 0.3, 1.5, &err), &err);
+    OWNED(motion_free) Motion motion = motion_of("builtin:kobe-like", 0.3, 1.5);
     for (size_t i = 0; i < motion.n; i++)
         motion.accel[i] *= sign;
-    CHECK_OK(scene_create(&scene, &o, &motion, &err), &err);
-    CHECK_OK(sim_worker_create(&worker, scene, &err), &err);
-    CHECK_OK(sim_run(worker, SCENE_IMPACT, x, &r, &err), &err);
-    sim_worker_free(worker);
-    scene_free(scene);
-    assert_int_equal(r.outcome, RUN_OK);
+    SimResult r = run_once(&o, &motion, SCENE_IMPACT, x);
     r.seconds = 0;
     return r;
 }
 
-/* Irregular gaps of 20 floors from x on; equal ones are chaotic. */
-static void set_gaps(double x[], double from, double to)
+/* Irregular gaps of 20 floors from x on, equal ones are chaotic; behind them the walls. */
+static void set_gaps(double x[22], double from, double to)
 {
     for (int j = 0; j < 20; j++)
         x[j] = from + (to - from) * fmod(0.618 * (j + 1), 1);
-}
-
-static void set_walls(double t[])
-{
-    t[0] = 0.03;
-    t[1] = 0.02;
+    x[20] = 0.03;
+    x[21] = 0.02;
 }
 
 TEST(equal_gaps_on_each_side_give_the_bytes_of_a_gap_on_both)
 {
     double both[22], each[42];
     set_gaps(both, 0.005, 0.03);
-    set_walls(both + 20);
     memcpy(each, both, 20 * sizeof *both);
     memcpy(each + 20, both, sizeof both);
     const SimResult a = tower(GAPS_BOTH, ENGINE_FAST, 1, both), b = tower(GAPS_EACH, ENGINE_FAST, 1, each);
@@ -123,10 +104,7 @@ static void expect_mirrored(const SimResult *a, const SimResult *b)
 {
     assert_less(20, a->impacts);
     assert_int_equal(a->impacts, b->impacts);
-    assert_close(b->j1_m, a->j1_m, 1e-9);
-    assert_close(b->j2_m, a->j2_m, 1e-9);
-    assert_close(b->j3_g, a->j3_g, 1e-9);
-    assert_close(b->edcs_pct, a->edcs_pct, 1e-9);
+    assert_close_in(*b, *a, 1e-9, j1_m, j2_m, j3_g, edcs_pct);
     for (int j = 0; j < 20; j++)
         for (int side = 0; side < SIDES; side++)
             assert_close(b->forces.contact_force_n[1 - side][j], a->forces.contact_force_n[side][j], 1e-8);
@@ -137,14 +115,12 @@ TEST(mirrored_gaps_under_the_mirrored_record_give_mirrored_results)
     double each[42], mirrored[42], one[22];
     set_gaps(each, 0.005, 0.02);
     set_gaps(each + 20, 0.04, 0.015);
-    set_walls(each + 40);
     memcpy(mirrored, each + 20, 20 * sizeof *each);
     memcpy(mirrored + 20, each, 20 * sizeof *each);
-    set_walls(mirrored + 40);
+    memcpy(mirrored + 40, each + 40, 2 * sizeof *each);
     const SimResult a = tower(GAPS_EACH, ENGINE_FAST, 1, each), b = tower(GAPS_EACH, ENGINE_FAST, -1, mirrored);
     expect_mirrored(&a, &b);
     set_gaps(one, 0.005, 0.03);
-    set_walls(one + 20);
     const SimResult l = tower(GAPS_LEFT, ENGINE_FAST, 1, one), r = tower(GAPS_RIGHT, ENGINE_FAST, -1, one);
     expect_mirrored(&l, &r);
     for (int j = 0; j < 20; j++)
@@ -157,9 +133,7 @@ TEST(both_engines_agree_on_gaps_that_differ)
     double each[42], left[22];
     set_gaps(each, 0.01, 0.05);
     set_gaps(each + 20, 0.10, 0.03);
-    set_walls(each + 40);
     set_gaps(left, 0.015, 0.05);
-    set_walls(left + 20);
     for (int i = 0; i < 2; i++) {
         const GapSides sides = i ? GAPS_LEFT : GAPS_EACH;
         const SimResult fast = tower(sides, ENGINE_FAST, 1, i ? left : each);
@@ -207,22 +181,16 @@ TEST(every_command_follows_gaps_by_side)
 {
     static const char HEADER[] = "id,gap_left_zone_1_m,gap_left_zone_2_m,gap_right_zone_1_m,gap_right_zone_2_m,t_base_"
                                  "m,t_top_m,bumper_log10_n_m,side_m,j1_m,";
-    const char *const COMMANDS[] = {
-        "simulate configs/quick.ini " SHORT EACH "--json --design @/run:knee",
-        "simulate configs/quick.ini " SHORT EACH "--replicates 2 --design @/run:knee",
-        "simulate configs/quick.ini " SHORT EACH "--design @/run:knee --contacts @/contacts.csv",
-        "check configs/quick.ini " EACH SHORT,
-        "status @/run",
-        "export @/run --all --csv @/all.csv",
-        has_browser() ? "report @/run --pictures @/pictures" : "report @/run",
-        "report @/run",
-    };
     free(output_of("optimize configs/quick.ini --out @/run --threads 2 --max-evals 24 --set search.initial=12 "
                    "--set search.population=12 --set search.polish=0 " EACH SHORT));
     FREED char *front = read_in_place("run/front.csv");
     assert_int_equal(strncmp(front, HEADER, sizeof HEADER - 1), 0);
-    for (size_t i = 0; i < sizeof COMMANDS / sizeof COMMANDS[0]; i++) {
-        free(output_of("%s", COMMANDS[i]));
+    FOR_EACH (const char *, command, "simulate configs/quick.ini " SHORT EACH "--json --design @/run:knee",
+              "simulate configs/quick.ini " SHORT EACH "--replicates 2 --design @/run:knee",
+              "simulate configs/quick.ini " SHORT EACH "--design @/run:knee --contacts @/contacts.csv",
+              "check configs/quick.ini " EACH SHORT, "status @/run", "export @/run --all --csv @/all.csv",
+              has_browser() ? "report @/run --pictures @/pictures" : "report @/run", "report @/run") {
+        free(output_of("%s", *command));
     }
     expect_file("run/report.html", "\"gap_side_m\":[[");
 }

@@ -78,23 +78,18 @@ TEST(the_start_is_the_design_of_the_run_and_idle_stops_change_no_bit)
 
 TEST(where_everything_may_be_lost_no_stop_is_left_and_where_nothing_may_none_goes_that_closes)
 {
-    ImproveConfig c = config_of(1e9);
-    Improved s = simplified(&c);
-    assert_int_equal(s.n_left[s.designs.n - 1], 0);
-    improved_free(&s);
-    c = (ImproveConfig){0};
-    s = simplified(&c);
+    const ImproveConfig anything = config_of(1e9), nothing = {0};
+    OWNED(improved_free) Improved bare = simplified(&anything), s = simplified(&nothing);
+    assert_int_equal(bare.n_left[bare.designs.n - 1], 0);
     for (size_t k = 0; k < study.schema.n_obj; k++)
         assert_at_most(s.designs.row[s.designs.n - 1].f[k] * (study.schema.column[study.schema.n_var + k].sense),
                        s.designs.row[0].f[k] * study.schema.column[study.schema.n_var + k].sense);
-    improved_free(&s);
 }
 
 /* Mass is limited to just above the knee's: heavy plates alone would break it. */
 TEST(limits_are_kept_or_nothing_is_stored)
 {
-    Settings limited = *study.settings;
-    Settings *before = study.settings;
+    Settings limited = *study.settings, *before = study.settings;
     ImproveConfig c = {.n_plates = 1, .plate = {0.06}};
     for (size_t k = 0; k < study.schema.n_obj; k++)
         c.slack[k] = INFINITY;
@@ -120,7 +115,6 @@ TEST(the_command_stores_its_end_and_refuses_what_is_no_length)
 
 TEST(ten_of_twenty_stops_go_from_the_knee_all_numbers_are_as_sold_and_j1_is_kept_within_2_percent)
 {
-    static const double SOLD[] = {0.008, 0.010, 0.012, 0.015, 0.020, 0.025, 0.030, 0.040, 0.050};
     free(output_of("simplify @/run --design knee --gap-step 5mm --plates 8,10,12,15,20,25,30,40,50 --keep j1_m=2%%"));
     OWNED(run_free) Run now = run_in("run");
     size_t pair[2], n_stops = 0, n_sold = 0;
@@ -133,16 +127,13 @@ TEST(ten_of_twenty_stops_go_from_the_knee_all_numbers_are_as_sold_and_j1_is_kept
         assert_less(off_step(x[j], 0.005), 1e-9);
     }
     for (size_t j = 20; j < 22; j++)
-        for (size_t i = 0; i < N_OF(SOLD); i++)
-            n_sold += fabs(x[j] - SOLD[i]) < 1e-12;
+        FOR_EACH (double, sold, 0.008, 0.010, 0.012, 0.015, 0.020, 0.025, 0.030, 0.040, 0.050)
+            n_sold += fabs(x[j] - *sold) < 1e-12;
     assert_at_most(n_stops, 10);
     assert_int_equal(n_sold, 2);
     assert_at_most(run_f(&now, pair[1])[0], 1.02 * run_f(&now, row)[0]);
     free(output_of("report @/run --design knee"));
-    char *page = read_in_place("run/report.html"), shown[64];
-    snprintf(shown, sizeof shown, "\"pair\":[{\"id\":%ld,", now.table.row[row].id);
-    assert_non_null(strstr(page, shown));
-    free(page);
+    expect_file("run/report.html", brief("\"pair\":[{\"id\":%ld,", now.table.row[row].id));
 }
 
 TEST(floors_of_a_zone_become_alike_and_stay_so_on_steps)
@@ -183,11 +174,10 @@ TEST(links_and_the_tuned_mass_go_by_their_words_as_far_as_they_earn_little)
 /* Whoever asks for the same once more gets the same answer, and the run keeps one design of it. */
 TEST(a_second_time_it_is_the_design_of_the_first)
 {
-    static const char *const AGAIN[] = {"simplify @/run --gap-step 10mm --plates 8,12,20,30 --keep j1_m=5%",
-                                        "simplify @/run --design 41 --gap-step 10mm --plates 8,12,20,30 --keep j1_m=0"};
     FREED char *before = all_of("run");
-    for (size_t i = 0; i < N_OF(AGAIN); i++) {
-        FREED char *said = output_of("%s", AGAIN[i]);
+    FOR_EACH (const char *, again, "simplify @/run --gap-step 10mm --plates 8,12,20,30 --keep j1_m=5%",
+              "simplify @/run --design 41 --gap-step 10mm --plates 8,12,20,30 --keep j1_m=0") {
+        FREED char *said = output_of("%s", *again);
         assert_non_null(strstr(said, "it is design 41 of the run: nothing new to store"));
     }
     FREED char *after = all_of("run");
@@ -198,9 +188,7 @@ TEST(a_second_time_it_is_the_design_of_the_first)
 TEST(what_loses_too_much_is_stored_and_named_with_the_keep_that_would_do)
 {
     OWNED(forget) Said said;
-    char *folder = in_place("run"), words[300];
-    free(output_of("optimize %s --new --out @/again", folder));
-    free(folder);
+    free(output_of("optimize @/run --new --out @/again"));
     run(&said, "simplify @/again --plates 8 --keep j1_m=0.1%%");
     assert_int_equal(said.code, 69);
     OWNED(run_free) Run now = run_in("again");
@@ -212,8 +200,7 @@ TEST(what_loses_too_much_is_stored_and_named_with_the_keep_that_would_do)
     assert_non_null(at);
     const double keep = strtod(at + strlen("--keep j1_m="), NULL);
     assert_true(keep >= loses && keep < loses + 1.1e-3);
-    snprintf(words, sizeof words, "the best design on these steps is design %ld, but j1_m loses ", last->id);
-    assert_non_null(strstr(said.err, words));
+    assert_words(said.err, brief("the best design on these steps is design %ld, but j1_m loses ", last->id));
     free(output_of("simplify @/again --plates 8 --keep j1_m=%g", keep));
 }
 

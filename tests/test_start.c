@@ -19,10 +19,7 @@ TEST(given_designs_come_first_inside_the_box_and_once)
         for (size_t j = 0; j < i; j++)
             assert_memory_not_equal(h.table.x + i * 4, h.table.x + j * 4, 4 * sizeof *h.table.x);
     write_in_place("short.csv", "x1,x2,x4\n0,0,0\n");
-    char arguments[256];
-    snprintf(arguments, sizeof arguments, "optimize @/begin.ini --out @/no --set search.start=%s/short.csv",
-             place.folder);
-    expect(65, "x3", arguments);
+    expect(65, "x3", brief("optimize @/begin.ini --out @/no --set search.start=%s/short.csv", place.folder));
 }
 
 TEST(several_starts_are_taken_one_behind_the_other)

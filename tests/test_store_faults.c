@@ -7,11 +7,8 @@
 #include <execinfo.h>
 #include <sys/resource.h>
 
-#include <sqlite3.h>
-
 #include "base/hash.h"
 #include "base/text.h"
-#include "study/study.h"
 
 enum { SOME = 3 };
 
@@ -21,14 +18,16 @@ static const char *const KINDS[N_KINDS] = {"sqlite3_step",    "sqlite3_exec", "s
                                            "realloc",         "fopencookie",  "fopen",
                                            "fflush",          "rename"};
 
-static struct {
+typedef struct {
     int armed;
     Kind kind;
     long at, n[N_KINDS];
     int code;       /* what SQLite says of it */
     int rolls_back; /* as SQLite does by itself on a full disk or without memory */
     int struck;
-} fault;
+} Fault;
+
+static Fault fault;
 
 /* Calls that were first of their kind with one stack of callers: what fails there differs; 1, 2, ... as `at`. */
 enum { STACK = 5, SITES_MAX = 1024 };
@@ -76,11 +75,7 @@ static int fails(Kind kind)
 /* at = 0: calls are counted, none fails. */
 static void arm(Kind kind, long at, int code)
 {
-    memset(&fault, 0, sizeof fault);
-    fault.kind = kind;
-    fault.at = at;
-    fault.code = code;
-    fault.armed = 1;
+    fault = (Fault){.kind = kind, .at = at, .code = code, .armed = 1};
 }
 
 #define WRAP(type, name, kind, failed, parameters, arguments)                                                          \
@@ -128,9 +123,7 @@ WRAP_CODE(sqlite3_extended_errcode)
 
 static void remove_in_place(const char *name)
 {
-    char command[128];
-    snprintf(command, sizeof command, "rm -rf '%s/%s'", place.folder, name);
-    assert_int_equal(system(command), 0);
+    expect_shell("rm -rf '%s/%s'", place.folder, name);
 }
 
 /* -- a study ------------------------------------------------------------------------------------------------------- */
@@ -148,28 +141,13 @@ static Status study(const Settings *s, Err *why)
     return study_run(s, &(StudyOptions){0}, &summary, NULL, why);
 }
 
-static int stop_after(void *left)
-{
-    return --*(int *)left < 0;
-}
-
-/* Every other study has a first half already and goes on from there. */
-static void run_half(const Settings *s)
-{
-    int left = 17;
-    err = (Err){0};
-    StudySummary summary;
-    const StudyOptions options = {.stop = stop_after, .user = &left};
-    assert_int_equal(study_run(s, &options, &summary, NULL, &err), STATUS_STOPPED);
-}
-
 static void fail_once(Kind kind, long at, const char *front)
 {
     err = (Err){0};
     remove_in_place("faulty");
     const Settings s = short_textbook("faulty");
-    if (at % 2 == 0)
-        run_half(&s);
+    if (at % 2 == 0) /* a first half, from which it goes on */
+        study_stopped_after(17, &s);
     arm(kind, at, SQLITE_IOERR);
     const Status status = study(&s, &err);
     fault.armed = 0;
@@ -308,11 +286,8 @@ static Status life(const char *folder, const Schema *schema, Err *why)
 /* The tables of a life, one behind the other. */
 static char *tables(void)
 {
-    char *front = read_in_place("life/front.csv"), folder[PATH_MAX], *all = json_export(path_of("life", folder)), *both;
-    assert_less(0, asprintf(&both, "%s\n%s", front, all));
-    free(front);
-    free(all);
-    return both;
+    FREED char *front = read_in_place("life/front.csv"), *all = json_export(there("life"));
+    return formatted("%s\n%s", front, all);
 }
 
 static void check_life(Kind kind, long at, int rolls_back, const char *folder, const Schema *schema, const char *wanted)
@@ -337,7 +312,7 @@ TEST(whichever_call_of_a_run_fails_it_goes_on_to_the_same_tables)
 {
     char folder[PATH_MAX];
     long n[N_KINDS];
-    Schema schema;
+    OWNED(schema_free) Schema schema;
     const Settings s = settings_of(PLAIN, "life");
     CHECK_OK(schema_of(&schema, &s, 0, &err), &err);
     path_of("life", folder);
@@ -359,7 +334,6 @@ TEST(whichever_call_of_a_run_fails_it_goes_on_to_the_same_tables)
                 check_life(kind, at, 1, folder, &schema, wanted);
         }
     print_message("%ld calls refused, of %ld, %ld, %ld, ...\n", n_struck, n[STEP], n[EXEC], n[PREPARE]);
-    schema_free(&schema);
 }
 
 /* What SQLite says becomes a status and words; who may not share the journal reads it without locks. */
@@ -444,11 +418,8 @@ static const char *long_path(char path[], size_t n, const char *name)
 static void refused_by_store(const char *folder, int fresh, const char *words)
 {
     RunStore *store;
-    err = (Err){0};
-    assert_int_equal(store_open(&store, folder, fresh, &err), STATUS_IO);
+    assert_refused(store_open(&store, folder, fresh, &err), STATUS_IO, words);
     assert_null(store);
-    if (!strstr(err.text, words))
-        fail_msg("%s: %s, wanted %s", folder, err.text, words);
 }
 
 TEST(a_folder_that_cannot_hold_the_run_is_named_and_a_fresh_run_takes_the_next)

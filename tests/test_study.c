@@ -11,30 +11,25 @@
 TEST(the_front_has_the_same_bytes_at_any_number_of_threads)
 {
     static const int THREADS[] = {1, 2, 5};
-    char name[64], *front[3], *all[3];
+    char *front[3], *all[3];
     for (int i = 0; i < 3; i++) {
         free(output_of(SMALL_STUDY "--threads %d --out @/threads-%d", THREADS[i], THREADS[i]));
-        snprintf(name, sizeof name, "threads-%d/front.csv", THREADS[i]);
-        front[i] = read_in_place(name);
-        snprintf(name, sizeof name, "threads-%d", THREADS[i]);
-        all[i] = all_of(name);
+        front[i] = read_in_place(brief("threads-%d/front.csv", THREADS[i]));
+        all[i] = all_of(brief("threads-%d", THREADS[i]));
     }
-    for (int i = 1; i < 3; i++) {
+    for (int i = 2; i >= 0; i--) {
         assert_string_equal(front[0], front[i]);
         assert_string_equal(all[0], all[i]);
         free(front[i]);
         free(all[i]);
     }
-    free(front[0]);
-    free(all[0]);
 }
 
 TEST(a_run_is_repeated_from_its_own_folder)
 {
     free(output_of("optimize @/threads-2/settings.ini --out @/again"));
     assert_same_files("threads-2/front.csv", "again/front.csv");
-    FREED char *path = in_place("again/provenance.json");
-    json_auto_t *o = json_load_file(path, 0, NULL);
+    json_auto_t *o = json_load_file(there("again/provenance.json"), 0, NULL);
     assert_non_null(o);
     assert_same_number(json_integer_value(json_object_get(o, "seed")), 1);
     assert_non_null(json_object_get(json_object_get(o, "libraries"), "sundials"));
@@ -69,18 +64,11 @@ TEST(the_front_holds_nondominated_designs_in_the_search_box)
 
 TEST(a_run_that_is_finished_is_shown_again_and_a_new_one_gets_a_number)
 {
-    Said s;
-    FREED char *before = read_in_place("threads-1/front.csv");
-    run(&s, SMALL_STUDY "--threads 2 --max-hours 1 --out @/threads-1"); /* of this session: no lower limit of the run */
-    assert_int_equal(s.code, 0);
-    assert_non_null(strstr(s.out, "finished before"));
-    forget(&s);
+    FREED char *before = read_in_place("threads-1/front.csv"); /* the hours are of this session: no limit of the run */
+    expect_output("finished before", SMALL_STUDY "--threads 2 --max-hours 1 --out @/threads-1");
     FREED char *after = read_in_place("threads-1/front.csv");
     assert_string_equal(before, after);
-    run(&s, SMALL_STUDY "--new --set run.out=@/threads-1");
-    assert_int_equal(s.code, 0);
-    assert_non_null(strstr(s.out, "threads-1-2/front.csv"));
-    forget(&s);
+    expect_output("threads-1-2/front.csv", SMALL_STUDY "--new --set run.out=@/threads-1");
 }
 
 TEST(the_export_is_the_front)
@@ -89,17 +77,12 @@ TEST(the_export_is_the_front)
     assert_same_files("threads-1/front.csv", "exported.csv");
 }
 
-static long first_id(const char *front)
-{
-    return strtol(strchr(front, '\n') + 1, NULL, 10);
-}
-
 TEST(a_design_of_the_front_is_evaluated_on_other_motions)
 {
     FREED char *front = read_in_place("threads-1/front.csv");
     json_auto_t *o =
         json_of("evaluate @/threads-1 --design %ld --record builtin:kobe-like --record builtin:elcentro-like --json",
-                first_id(front));
+                strtol(strchr(front, '\n') + 1, NULL, 10));
     const json_t *records = json_object_get(o, "records");
     assert_int_equal(json_array_size(records), 2);
     assert_string_equal(json_string_value(json_object_get(json_array_get(records, 1), "record")),
@@ -118,13 +101,9 @@ TEST(a_design_of_the_front_is_evaluated_on_other_motions)
 
 TEST(status_tells_a_run_from_a_folder_of_runs)
 {
-    char *said = output_of("status @/threads-1");
-    assert_non_null(strstr(said, "threads-1: finished"));
-    free(said);
-    said = output_of("status @");
-    assert_non_null(strstr(said, "\nthreads-1 "));
-    assert_null(strstr(said, "hypervolume")); /* each has a box of its own */
-    free(said);
+    expect_output("threads-1: finished", "status @/threads-1");
+    FREED char *said = output_of("status @");
+    assert_words(said, "\nthreads-1 ", "!hypervolume"); /* each has a box of its own */
 }
 
 static const char *record_of(const json_t *list, size_t i)
@@ -168,8 +147,7 @@ TEST(a_design_is_evaluated_on_every_motion_of_a_folder)
     expect(65, "holds no ground motion that can be read", "evaluate @/threads-1 --design knee --record configs/sac20");
     expect(65, "not read: tests/motion/one.knet: motion.channel '99' is not exactly one of its channels",
            "evaluate @/threads-1 --design knee --record tests/motion --set motion.channel=99");
-    FREED char *empty = in_place("empty");
-    assert_int_equal(mkdir(empty, 0777), 0);
+    assert_int_equal(mkdir(there("empty"), 0777), 0);
     Said s;
     run(&s, "evaluate @/threads-1 --design knee --record @/empty");
     assert_int_equal(s.code, 65);
@@ -186,10 +164,9 @@ TEST(a_design_is_evaluated_on_every_motion_of_a_folder)
 /* Each design of the table `some` is a row of the table `all`. */
 static void assert_all_in(const char *some, const char *all)
 {
-    char start[32];
     assert_int_equal(some[strlen(some) - 1], '\n');
     for (const char *row = some; (row = strchr(row, '\n')) && row[1];) {
-        snprintf(start, sizeof start, "\n%ld,", strtol(++row, NULL, 10));
+        FREED char *start = formatted("\n%ld,", strtol(++row, NULL, 10));
         if (!strstr(all, start))
             fail_msg("design %s is not among the simulations", start + 1);
     }
@@ -220,13 +197,9 @@ TEST(a_search_begins_with_given_designs)
     free(output_of("optimize @/sphere.ini --out @/earlier"));
     free(output_of("optimize @/sphere.ini --out @/later --set search.start=@/earlier"));
     free(output_of("export @/later --all --csv @/all.csv"));
-    FREED char *front_path = in_place("earlier/front.csv"), *all_path = in_place("all.csv");
-    char *all, *line;
-    size_t length;
-    OWNED(table_free) Table front;
-    CHECK_OK(table_read(&front, front_path, 1, &err), &err);
-    CHECK_OK(file_read(all_path, FILE_LARGEST, &all, &length, &err), &err);
-    line = strchr(all, '\n') + 1;
+    OWNED(table_free) Table front = table_of("earlier/front.csv");
+    FREED char *all = read_in_place("all.csv");
+    const char *line = strchr(all, '\n') + 1;
     for (size_t i = 0; i < front.n_rows; i++, line = strchr(line, '\n') + 1) {
         double x = 0.0;
         assert_int_equal(sscanf(line, "%*d,%*d,%*[a-z],ok,,%lf", &x), 1);
@@ -237,7 +210,6 @@ TEST(a_search_begins_with_given_designs)
     free(output_of("export @/earlier --all --csv @/polished-too.csv"));
     expect_file("polished-too.csv", ",polished,ok,");
     expect(66, "search.start", "optimize @/sphere.ini --out @/no --set search.start=@/nothing");
-    free(all);
 }
 
 TEST(a_worker_gives_the_same_run_at_any_number_of_threads)

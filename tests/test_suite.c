@@ -18,11 +18,8 @@ static Motion motion[SUITE_MOTIONS]; /* made once for all tests */
 
 static int make_suite(void **state)
 {
-    char source[OPTION_TEXT_MAX];
-    for (int i = 0; i < SUITE_MOTIONS; i++) {
-        snprintf(source, sizeof source, "builtin:suite-%02d", i + 1);
-        CHECK_OK(motion_load(&motion[i], source, UNIT_FROM_FILE, &err), &err);
-    }
+    for (int i = 0; i < SUITE_MOTIONS; i++)
+        CHECK_OK(motion_load(&motion[i], brief("builtin:suite-%02d", i + 1), UNIT_FROM_FILE, &err), &err);
     return make_place(state);
 }
 
@@ -101,23 +98,18 @@ static const char SAMPLES[] = "# dt = 0.02\naccel_m_s2\n0\n1\n-2\n1\n0\n";
 
 TEST(a_study_has_its_first_record_once_then_those_of_its_suites_in_order)
 {
-    char folder[OPTION_TEXT_MAX], first[OPTION_TEXT_MAX], list[OPTION_TEXT_MAX];
-    snprintf(folder, sizeof folder, "%s/records", place.folder);
-    mkdir(folder, 0777);
-    snprintf(first, sizeof first, "%s/records/inside", place.folder);
-    mkdir(first, 0777);
+    FREED char *folder = in_place("records"), *first = in_place("records/../records/b.csv");
     write_in_place("records/b.csv", SAMPLES);
+    mkdir(there("records/inside"), 0777);
     write_in_place("records/a.csv", SAMPLES);
     write_in_place("records/.hidden", SAMPLES);
-    snprintf(first, sizeof first, "%s/records/../records/b.csv", place.folder);
     Seen s = seen_of(first, folder);
     assert_int_equal(s.n, 2);
     assert_string_equal(s.source[0], first);
     assert_string_equal(s.source[1] + strlen(s.source[1]) - 6, "/a.csv");
 
     write_in_place("list.txt", "# two\nrecords/a.csv channel=1 factor=2.5\n\nbuiltin:kobe-like # known\n");
-    snprintf(list, sizeof list, "%s/list.txt,builtin:elcentro-like", place.folder);
-    s = seen_of("builtin:kobe-like", list);
+    s = seen_of("builtin:kobe-like", there("list.txt,builtin:elcentro-like"));
     assert_int_equal(s.n, 3);
     assert_non_null(strstr(s.source[1], "/records/a.csv channel=1 factor=2.5"));
     assert_string_equal(s.source[2], "builtin:elcentro-like");
@@ -129,9 +121,8 @@ TEST(a_factor_and_a_component_belong_to_their_record_alone)
 {
     MotionOptions o = {.factor = 2, .stretch = 1, .unit = "from_file", .channel = "auto"};
     Motion plain = {0}, scaled = {0};
-    char path[128];
     write_in_place("two.csv", "# dt = 0.02, units: m/s2\nns,ew\n0,0\n1,3\n-2,5\n0,0\n");
-    snprintf(path, sizeof path, "%s/two.csv", place.folder);
+    FREED char *path = in_place("two.csv");
     snprintf(o.record, sizeof o.record, "%s channel=ew factor=1.5", path);
     CHECK_OK(motion_open(&scaled, &o, &err), &err);
     CHECK_OK(motion_scale(&scaled, &o, &err), &err);
@@ -153,10 +144,9 @@ TEST(a_study_under_a_suite_is_simulated_under_all_of_it_and_notices_a_changed_li
 {
     write_in_place("study_list.txt", "builtin:sylmar-like\nbuiltin:suite-03 factor=1.5\n");
     free(output_of("optimize configs/quick.ini " SIX_FLOORS
-                   "--set motion.record=builtin:elcentro-like --set sim.duration_s=4 "
-                   "--set motion.pga_g=0 --set motion.records=@/study_list.txt --set sim.accuracy=coarse --set "
-                   "search.max_evals=4 --set search.initial=4 --set search.population=4 "
-                   "--set search.polish=0 --out @/run"));
+                   "--set motion.record=builtin:elcentro-like --set sim.duration_s=4 --set motion.pga_g=0 --set "
+                   "motion.records=@/study_list.txt --set sim.accuracy=coarse --set search.max_evals=4 --set "
+                   "search.initial=4 --set search.population=4 --set search.polish=0 --out @/run"));
     json_auto_t *o = json_of("evaluate @/run --design knee --json");
     assert_int_equal(json_array_size(json_object_get(o, "records")), 3);
     write_in_place("study_list.txt", "builtin:sylmar-like\nbuiltin:suite-03 factor=1.6\n");

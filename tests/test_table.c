@@ -32,11 +32,10 @@ TEST(numbers_come_out_as_they_were_written_below_the_names_of_their_columns)
 
 TEST(comments_blank_lines_and_foreign_line_ends_are_skipped_and_blanks_part_numbers)
 {
-    static const char *const TEXTS[] = {"# who\r\n\r\n  # what\r\n 1 , 2 \r\n\r\n\t3\t,4\r\n# end",
-                                        "#\n   1.0e+00  2\n3\t 4 \n", "1,0 2,0\n3,0 4,0"};
-    for (size_t i = 0; i < N_OF(TEXTS); i++) {
+    FOR_EACH (const char *, text, "# who\r\n\r\n  # what\r\n 1 , 2 \r\n\r\n\t3\t,4\r\n# end",
+              "#\n   1.0e+00  2\n3\t 4 \n", "1,0 2,0\n3,0 4,0") {
         OWNED(table_free) Table t;
-        CHECK_OK(parse(&t, TEXTS[i], 0, &err), &err);
+        CHECK_OK(parse(&t, *text, 0, &err), &err);
         const double want[] = {1, 2, 3, 4};
         assert_int_equal(t.n_rows, 2);
         assert_null(t.names);
@@ -83,22 +82,14 @@ TEST(a_missing_file_is_told_from_a_bad_one)
 /* The same 2 x 3 numbers as a spreadsheet of several countries writes them. */
 TEST(the_forms_of_spreadsheets_hold_the_same_numbers)
 {
-    static const char *const FORMS[] = {
-        "1.5,-2.25,3e-7\n0.1,4,5\n",
-        "\xef\xbb\xbfsep=;\r\n1,5;-2,25;3e-7\r\n0,1;4;5\r\n",
-        "\357\273\2771.5,-2.25,3e-7\r\n0.1,4,5\r\n",
-        "1.5;-2.25;3e-7\n0.1;4;5\n",
-        "1,5;-2,25;3e-7\n0,1;4;5\n",
-        "1.5\t-2.25\t3e-7\n0.1\t4\t5\n",
-        "1,5\t-2,25\t3e-7\r\n0,1\t4\t5\r\n",
-        "\"1,5\",\"-2,25\",\"3e-7\"\n\"0,1\",4,5\n",
-        "\"1.5\";\"-2.25\";\"3e-7\"\n0.1;4;5\n;;\n;;\n",
-        "# made by hand\r1.5 , -2.25 , 3e-7\r0.1 , 4 , 5\r",
-    };
     const double want[] = {1.5, -2.25, 3e-7, 0.1, 4, 5};
-    for (size_t i = 0; i < sizeof FORMS / sizeof FORMS[0]; i++) {
+    FOR_EACH (const char *, form, "1.5,-2.25,3e-7\n0.1,4,5\n", "\xef\xbb\xbfsep=;\r\n1,5;-2,25;3e-7\r\n0,1;4;5\r\n",
+              "\357\273\2771.5,-2.25,3e-7\r\n0.1,4,5\r\n", "1.5;-2.25;3e-7\n0.1;4;5\n", "1,5;-2,25;3e-7\n0,1;4;5\n",
+              "1.5\t-2.25\t3e-7\n0.1\t4\t5\n", "1,5\t-2,25\t3e-7\r\n0,1\t4\t5\r\n",
+              "\"1,5\",\"-2,25\",\"3e-7\"\n\"0,1\",4,5\n", "\"1.5\";\"-2.25\";\"3e-7\"\n0.1;4;5\n;;\n;;\n",
+              "# made by hand\r1.5 , -2.25 , 3e-7\r0.1 , 4 , 5\r") {
         OWNED(table_free) Table t;
-        CHECK_OK(parse(&t, FORMS[i], 0, &err), &err);
+        CHECK_OK(parse(&t, *form, 0, &err), &err);
         assert_int_equal(t.n_rows, 2);
         assert_int_equal(t.n_cols, 3);
         assert_memory_equal(t.values, want, sizeof want);
@@ -107,15 +98,11 @@ TEST(the_forms_of_spreadsheets_hold_the_same_numbers)
 
 TEST(a_header_of_a_spreadsheet_loses_its_mark_and_its_quotes)
 {
-    static const char *const FORMS[] = {
-        "\xef\xbb\xbfgap_01_m,t_base_m\n0.05,0.012\n",
-        "\xef\xbb\xbfgap_01_m;t_base_m\r\n0,05;0,012\r\n",
-        "\"gap_01_m\"\t\"t_base_m\"\n0,05\t0,012\n",
-        "\"gap_01_m\",\"t_base_m\"\n\"0,05\",\"0,012\"\n",
-    };
-    for (size_t i = 0; i < sizeof FORMS / sizeof FORMS[0]; i++) {
+    FOR_EACH (const char *, form, "\xef\xbb\xbfgap_01_m,t_base_m\n0.05,0.012\n",
+              "\xef\xbb\xbfgap_01_m;t_base_m\r\n0,05;0,012\r\n", "\"gap_01_m\"\t\"t_base_m\"\n0,05\t0,012\n",
+              "\"gap_01_m\",\"t_base_m\"\n\"0,05\",\"0,012\"\n") {
         OWNED(table_free) Table t;
-        CHECK_OK(parse(&t, FORMS[i], 1, &err), &err);
+        CHECK_OK(parse(&t, *form, 1, &err), &err);
         assert_int_equal(table_column(&t, "gap_01_m"), 0);
         assert_int_equal(table_column(&t, "t_base_m"), 1);
         assert_true(t.n_rows == 1 && t.values[0] == 0.05 && t.values[1] == 0.012);
@@ -163,8 +150,7 @@ static const char DESIGNS[] = "# two designs for two floors\n"
 
 static void write_file(const char *path, const char *text)
 {
-    FILE *f = fopen(path, "w");
-    assert_non_null(f);
+    FILE *f = opened(path, "w");
     assert_at_most(0, fputs(text, f));
     assert_int_equal(fclose(f), 0);
 }
@@ -205,8 +191,7 @@ TEST(variables_are_named_by_floor_from_the_bottom)
 static Status read_two_floors(const char *path, Err *why)
 {
     OWNED(design_free) Designs d;
-    const Status status = design_read(&d, path, paper_space(2), why);
-    return status;
+    return design_read(&d, path, paper_space(2), why);
 }
 
 TEST(every_bad_design_file_is_refused_with_its_fault)

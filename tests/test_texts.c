@@ -41,7 +41,6 @@ typedef struct {
 
 static void try_case(const Case *c)
 {
-    err = (Err){0};
     OWNED(motion_free) Motion m;
     MotionHow how = c->how;
     FREED char *text = lines_of(c->head, c->per_line, c->with_times, c->scale, c->zero);
@@ -72,8 +71,7 @@ TEST(rules_counts_and_words_before_numbers_are_a_header)
         {"*** Site: somewhere\n***\nunits: g\n", 1, 1, 1, 0, NULL, {0}, NULL},
         {"16628 LOST CANYON RD\nunits: g, dt: 0.02\n", 1, 0, 1, 0, NULL, {0}, NULL},
         {"A record, acceleration in g\n121 points, 0.02 s\n", 1, 0, 1, 0, NULL, {0}, "announces 121 samples"},
-        {"units: g, dt: 0.02\n********\n", 1, 0, 1, 0, NULL, {0}, "then '********'"},
-    };
+        {"units: g, dt: 0.02\n********\n", 1, 0, 1, 0, NULL, {0}, "then '********'"}};
     for (size_t i = 0; i < sizeof CASES / sizeof CASES[0]; i++)
         try_case(&CASES[i]);
 }
@@ -91,8 +89,7 @@ TEST(what_would_be_another_motion_is_refused_and_read_as_motion_text_says)
          "has 6 numbers where motion.text says per_line=5"},
         {"", 1, 1, 1, 0, "columns=time:1,value:2", {.unit = UNIT_G}, NULL},
         {"", 1, 1, 1, 0, "columns=time:1,value:3", {.unit = UNIT_G}, "120 lines of 2 numbers; it has not what"},
-        {"", 1, 1, 1.0 / 9.81, 0, "columns=time:1,value:2,factor=9.81", {.unit = UNIT_G}, NULL},
-    };
+        {"", 1, 1, 1.0 / 9.81, 0, "columns=time:1,value:2,factor=9.81", {.unit = UNIT_G}, NULL}};
     for (size_t i = 1; i < sizeof CASES / sizeof CASES[0]; i++)
         try_case(&CASES[i]);
 }
@@ -109,8 +106,7 @@ TEST(rows_of_pairs_are_refused_with_the_option_and_read_by_it)
             fprintf(f, "%.2f, %.6e%s", STEP * k, sample(k), (k + 1) % pairs && k + 1 < N ? ", " : "\n");
         fclose(f);
         for (int with_count = 0; with_count < 2; with_count++) {
-            char whole[16384], *const names[] = {"", "# npts = 240\n# dt = 0.02 s\n"};
-            snprintf(whole, sizeof whole, "%s%s", names[with_count], text);
+            FREED char *whole = formatted("%s%s", with_count ? "# npts = 240\n# dt = 0.02 s\n" : "", text);
             MotionHow how = {.unit = UNIT_G, .channel = pairs == 2 ? "1" : NULL};
             assert_refused(motion_parse(&m, "pairs", whole, strlen(whole), &how, &err), STATUS_BAD_DATA,
                            "--text pairs=yes");
@@ -150,11 +146,11 @@ TEST(the_zero_of_a_recorder_is_removed_from_counts_and_said_of_other_units)
         const MotionHow counts = {.unit = UNIT_COUNTS, .counts_per_m_s2 = 4000 / 9.81, .dt_s = STEP}, in_g = G;
         CHECK_OK(motion_parse(&m, "zero", text, strlen(text), with_counts ? &counts : &in_g, &err), &err);
         if (with_counts) {
-            assert_non_null(strstr(m.processed, "counts subtracted"));
+            assert_words(m.processed, "counts subtracted");
             assert_close(m.accel[47], 9.81 * (PEAK_G - mean), 1e-5);
         } else {
             assert_string_equal(m.processed, "");
-            assert_non_null(strstr(m.warning, "of its peak: if that is the zero of the recorder, motion.baseline"));
+            assert_words(m.warning, "of its peak: if that is the zero of the recorder, motion.baseline");
             assert_close(m.accel[47], 9.81 * (PEAK_G + 0.5), 1e-5);
         }
     }
@@ -169,29 +165,25 @@ TEST(a_text_that_is_not_understood_shows_its_first_lines_and_what_to_try)
         {HEAD, 1, 0, 1, 0, NULL, G, "perhaps --text skip=2"},
         {HEAD, 8, 0, 1, 0, "skip=2,per_line=8", G, NULL},
         {HEAD, 1, 1, 1, 0, "skip=2,columns=time:1,value:2", G, NULL},
-        {HEAD, 1, 0, 1, 0, "skip=2", G, NULL},
-    };
+        {HEAD, 1, 0, 1, 0, "skip=2", G, NULL}};
     for (size_t i = 0; i < sizeof CASES / sizeof CASES[0]; i++)
         try_case(&CASES[i]);
 }
 
 TEST(a_form_that_is_not_understood_is_refused_as_a_setting_and_an_option)
 {
-    static const char *const BAD[] = {
-        "skip",           "skip=-1",           "skip=1.5",         "columns=2", "value:0",
-        "factor=0",       "pairs=perhaps",     "per_line=x",       "foo=1",     "factor=nan",
-        "time:1,value:1", "pairs=yes,value:2", "per_line=8,time:1"};
     TextForm form;
-    for (size_t i = 0; i < sizeof BAD / sizeof BAD[0]; i++)
-        if (text_form_parse(BAD[i], &form, &err) != STATUS_BAD_DATA || !strstr(err.text, "motion.text"))
-            fail_msg("%s: %s", BAD[i], err.text);
+    FOR_EACH (const char *, bad, "skip", "skip=-1", "skip=1.5", "columns=2", "value:0", "factor=0", "pairs=perhaps",
+              "per_line=x", "foo=1", "factor=nan", "time:1,value:1", "pairs=yes,value:2", "per_line=8,time:1")
+        if (text_form_parse(*bad, &form, &err) != STATUS_BAD_DATA || !strstr(err.text, "motion.text"))
+            fail_msg("%s: %s", *bad, err.text);
     expect(65, "motion.text: 'skip=x' is not understood", "spectrum builtin:kobe-like --text skip=x");
     FREED char *text = lines_of("1\n0.02\n", 1, 0, 1, 0);
     OWNED(forget) Said s;
     write_in_place("factor.txt", text);
     run(&s, "spectrum @/factor.txt --unit g --set motion.dt_s=0.02 --text skip=2 --json");
     assert_int_equal(s.code, 0);
-    assert_non_null(strstr(s.out, "0.25"));
+    assert_words(s.out, "0.25");
 }
 
 /* Inputs that were read wrongly once, where the folder that holds them is there. */
@@ -202,29 +194,26 @@ TEST(the_records_of_the_shared_cases_are_read_or_refused)
         double dt_s, peak_g; /* 0: refused */
         size_t n;
         const char *says;
-    } CASES[] = {
-        {"counts_offset.txt", "counts=4000", NULL, NULL, 0.01, 392 / 4000.0 / 9.81, 300, NULL},
-        {"factor_dt_header.txt", "g", NULL, NULL, 0.01, 0, 0, "--text skip=2"},
-        {"factor_dt_header.txt", "g", "skip=2", NULL, 0.01, 0.19989, 300, NULL},
-        {"bare_spectrum.txt", "g", NULL, NULL, 0, 0, 0, "as in a spectrum"},
-        {"four_pairs.txt", "g", NULL, "1", 0, 0, 0, "--text pairs=yes"},
-        {"four_pairs.txt", "g", "pairs=yes", NULL, 0, 0.19989, 300, NULL},
-        {"sap2000_three_pairs.txt", "g", NULL, NULL, 0, 0, 0, "--text pairs=yes"},
-        {"sap2000_as_advised.txt", "g", NULL, NULL, 0, 0, 0, "--text pairs=yes"},
-        {"sap2000_three_pairs.txt", "g", "pairs=yes", NULL, 0, 0.19989, 301, NULL},
-        {"sap2000_as_advised.txt", "g", "pairs=yes", NULL, 0, 0.19989, 301, NULL},
-        {"rule_line.txt", "from_file", NULL, "E", 0, 0.19989, 300, NULL},
-        {"equal_signs.csv", "from_file", NULL, NULL, 0, 0.19989, 300, NULL},
-        {"count_line.txt", "from_file", NULL, NULL, 0, 0.19989, 300, NULL},
-    };
+    } CASES[] = {{"counts_offset.txt", "counts=4000", NULL, NULL, 0.01, 392 / 4000.0 / 9.81, 300, NULL},
+                 {"factor_dt_header.txt", "g", NULL, NULL, 0.01, 0, 0, "--text skip=2"},
+                 {"factor_dt_header.txt", "g", "skip=2", NULL, 0.01, 0.19989, 300, NULL},
+                 {"bare_spectrum.txt", "g", NULL, NULL, 0, 0, 0, "as in a spectrum"},
+                 {"four_pairs.txt", "g", NULL, "1", 0, 0, 0, "--text pairs=yes"},
+                 {"four_pairs.txt", "g", "pairs=yes", NULL, 0, 0.19989, 300, NULL},
+                 {"sap2000_three_pairs.txt", "g", NULL, NULL, 0, 0, 0, "--text pairs=yes"},
+                 {"sap2000_as_advised.txt", "g", NULL, NULL, 0, 0, 0, "--text pairs=yes"},
+                 {"sap2000_three_pairs.txt", "g", "pairs=yes", NULL, 0, 0.19989, 301, NULL},
+                 {"sap2000_as_advised.txt", "g", "pairs=yes", NULL, 0, 0.19989, 301, NULL},
+                 {"rule_line.txt", "from_file", NULL, "E", 0, 0.19989, 300, NULL},
+                 {"equal_signs.csv", "from_file", NULL, NULL, 0, 0.19989, 300, NULL},
+                 {"count_line.txt", "from_file", NULL, NULL, 0, 0.19989, 300, NULL}};
     const char *folder = access("../shared/cases", F_OK) == 0 ? "../shared/cases" : "../../shared/cases";
     if (access(folder, F_OK) != 0)
         skip();
     for (size_t i = 0; i < sizeof CASES / sizeof CASES[0]; i++) {
-        char path[128];
         OWNED(motion_free) Motion m;
         MotionHow how = {.channel = CASES[i].channel, .dt_s = CASES[i].dt_s};
-        snprintf(path, sizeof path, "%s/%s", folder, CASES[i].file);
+        FREED char *path = formatted("%s/%s", folder, CASES[i].file);
         CHECK_OK(motion_unit_parse(CASES[i].unit, &how.unit, &how.counts_per_m_s2, &err), &err);
         CHECK_OK(text_form_parse(CASES[i].form ? CASES[i].form : "auto", &how.text, &err), &err);
         const Status s = motion_read(&m, path, &how, &err);

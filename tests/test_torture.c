@@ -26,8 +26,7 @@ static const Prey PREYS[] = {
              "initial = 24\npopulation = 16\nmax_evals = 40\nthreads = 2\n"},
     /* an answer takes 40 ms: kills come in the middle of a batch */
     {"worker", "[problem]\nkind = external\ncommand = sh tests/worker.sh steady\nvariables = 3\nobjectives = 2\n"
-               "[search]\ninitial = 36\npopulation = 12\nmax_evals = 46\nthreads = 2\n"},
-};
+               "[search]\ninitial = 36\npopulation = 12\nmax_evals = 46\nthreads = 2\n"}};
 enum { N_PREYS = sizeof PREYS / sizeof PREYS[0] };
 
 typedef struct {
@@ -37,31 +36,22 @@ typedef struct {
 /* While a start makes its database: files are there in part. */
 static const double EARLY_S = 0.08;
 
-static const char *in_place_of_said(char path[128])
-{
-    snprintf(path, 128, "%s/said", place.folder);
-    return path;
-}
-
 static void demand_success(int status)
 {
-    if (WIFEXITED(status) && WEXITSTATUS(status) == 0)
-        return;
-    char *said = read_in_place("said");
-    fail_msg("ended with %d: %s", status, said);
+    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
+        fail_msg("ended with %d: %s", status, read_in_place("said"));
 }
 
 static pid_t start(const Prey *prey, const char *folder, int by_folder)
 {
-    char config[128], said[128];
     pid_t pid;
     posix_spawn_file_actions_t quiet;
-    snprintf(config, sizeof config, "%s/%s.ini", place.folder, prey->name);
+    FREED char *config = formatted("%s/%s.ini", place.folder, prey->name);
     char *by_config[] = {getenv("IMTET"), "optimize", config, "--out", (char *)folder, NULL};
     char *goes_on[] = {getenv("IMTET"), "optimize", (char *)folder, NULL};
     posix_spawn_file_actions_init(&quiet);
     posix_spawn_file_actions_addopen(&quiet, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-    posix_spawn_file_actions_addopen(&quiet, STDERR_FILENO, in_place_of_said(said), O_WRONLY | O_CREAT | O_TRUNC, 0666);
+    posix_spawn_file_actions_addopen(&quiet, STDERR_FILENO, there("said"), O_WRONLY | O_CREAT | O_TRUNC, 0666);
     assert_int_equal(posix_spawn(&pid, getenv("IMTET"), &quiet, NULL, by_folder ? goes_on : by_config, environ), 0);
     posix_spawn_file_actions_destroy(&quiet);
     return pid;
@@ -98,12 +88,8 @@ static long count_lost(const Run *before, const Run *after)
 
 static int same_file(const char *a, const char *b, const char *name)
 {
-    char paths[2][256];
-    snprintf(paths[0], sizeof paths[0], "%s/%s", a, name);
-    snprintf(paths[1], sizeof paths[1], "%s/%s", b, name);
-    FREED char *first = text_of(paths[0]), *second = text_of(paths[1]);
-    const int same = strcmp(first, second) == 0;
-    return same;
+    FREED char *first = text_of(brief("%s/%s", a, name)), *second = text_of(brief("%s/%s", b, name));
+    return strcmp(first, second) == 0;
 }
 
 /* Every evaluation, digests included. */
@@ -111,22 +97,14 @@ static int same_run(const char *a, const char *b)
 {
     OWNED(run_free) Run first, second;
     const int seen = look(a, &first) == 1 && look(b, &second) == 1;
-    const int same = seen && first.table.n == second.table.n && count_lost(&first, &second) == 0;
-    return same;
-}
-
-static void remove_folder(const char *folder)
-{
-    char command[256];
-    snprintf(command, sizeof command, "rm -rf '%s'", folder);
-    assert_int_equal(system(command), 0);
+    return seen && first.table.n == second.table.n && count_lost(&first, &second) == 0;
 }
 
 static void judge_end(const char *reference, const char *folder, Figures *f)
 {
     f->finished++;
     f->different += !same_file(reference, folder, "front.csv") || !same_run(reference, folder);
-    remove_folder(folder);
+    expect_shell("rm -rf '%s'", folder);
 }
 
 /* One start, killed after `delay` unless it is finished before; 1: it was killed. */
@@ -160,9 +138,8 @@ static int start_and_kill(const Prey *prey, const char *folder, double delay, Fi
 static void torture(const Prey *prey, long kills)
 {
     Figures f = {0};
-    char reference[96], folder[96];
-    snprintf(reference, sizeof reference, "%s/%s-whole", place.folder, prey->name);
-    snprintf(folder, sizeof folder, "%s/%s-killed", place.folder, prey->name);
+    FREED char *reference = formatted("%s/%s-whole", place.folder, prey->name);
+    FREED char *folder = formatted("%s/%s-killed", place.folder, prey->name);
     const double begun = now_s();
     int status;
     assert_true(waitpid(start(prey, reference, 0), &status, 0) > 0 && WIFEXITED(status) && WEXITSTATUS(status) == 0);
@@ -192,14 +169,11 @@ static void torture(const Prey *prey, long kills)
 TEST(no_kill_loses_an_evaluation_or_changes_the_front)
 {
     setenv("OMP_WAIT_POLICY", "passive", 0); /* busy waiting costs more than it saves where processors are few */
-    const char *kills = getenv("TORTURE_KILLS");
-    const char *only = getenv("TORTURE_RUN");
+    const char *kills = getenv("TORTURE_KILLS"), *only = getenv("TORTURE_RUN");
     for (int i = 0; i < N_PREYS; i++) {
         if (only && strcmp(only, PREYS[i].name) != 0)
             continue;
-        char name[64];
-        snprintf(name, sizeof name, "%s.ini", PREYS[i].name);
-        write_in_place(name, PREYS[i].settings);
+        write_in_place(brief("%s.ini", PREYS[i].name), PREYS[i].settings);
         torture(&PREYS[i], ((kills ? strtol(kills, NULL, 10) : 8) + N_PREYS - 1) / N_PREYS);
     }
 }

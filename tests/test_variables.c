@@ -1,9 +1,7 @@
 /* Design variables: which there are, what a design of them is, and every command that takes one. */
 #include "runs.h"
 
-#include "base/random.h"
 #include "scene_options.h"
-#include "sim/sim.h"
 
 static DesignSpace space_of(const char *variables, long gap_zones, long bumper_zones, int n_floors)
 {
@@ -97,11 +95,10 @@ TEST(every_floor_has_the_gap_and_the_bumper_of_its_zone)
 
 TEST(wrong_variables_are_refused_with_their_key)
 {
-    static const char *const LISTS[] = {
-        "gaps", "thickness, bumper", "gaps, thickness, bumpr", "gaps,,thickness", "gaps, thickness, symmetric", "none"};
-    for (size_t i = 0; i < sizeof LISTS / sizeof LISTS[0]; i++) {
+    FOR_EACH (const char *, list, "gaps", "thickness, bumper", "gaps, thickness, bumpr", "gaps,,thickness",
+              "gaps, thickness, symmetric", "none") {
         OWNED(forget) Said s;
-        run(&s, "simulate configs/quick.ini --design none --set 'design.variables=%s'", LISTS[i]);
+        run(&s, "simulate configs/quick.ini --design none --set 'design.variables=%s'", *list);
         assert_int_not_equal(s.code, 0);
         assert_non_null(strstr(s.err, "design.variables"));
     }
@@ -115,18 +112,8 @@ TEST(wrong_variables_are_refused_with_their_key)
 
 static SimResult simulate(const SceneOptions *o, const double x[])
 {
-    OWNED(motion_free) Motion motion;
-    Scene *scene;
-    SimWorker *worker;
-    SimResult r;
-    CHECK_OK(motion_load(&motion, "builtin:kobe-like", UNIT_FROM_FILE, &err), &err);
-    CHECK_OK(motion_prepare(&motion, 0.3, 1.5, &err), &err);
-    CHECK_OK(scene_create(&scene, o, &motion, &err), &err);
-    CHECK_OK(sim_worker_create(&worker, scene, &err), &err);
-    CHECK_OK(sim_run(worker, SCENE_IMPACT, x, &r, &err), &err);
-    sim_worker_free(worker);
-    scene_free(scene);
-    assert_int_equal(r.outcome, RUN_OK);
+    OWNED(motion_free) Motion motion = motion_of("builtin:kobe-like", 0.3, 1.5);
+    const SimResult r = run_once(o, &motion, SCENE_IMPACT, x);
     assert_less(10, r.impacts);
     return r;
 }
@@ -150,14 +137,12 @@ TEST(a_design_is_simulated_the_same_by_any_variables)
     assert_true(a.j1_m != b.j1_m); /* the bumpers of the upper half differ */
     z[8] = 9;
     b = simulate(&zoned, z);
-    assert_close(b.j1_m, a.j1_m, 1e-12);
-    assert_close(b.j3_g, a.j3_g, 1e-12);
+    assert_close_in(b, a, 1e-12, j1_m, j3_g);
     assert_close(b.mcore_kg, a.mcore_kg, 1e-15);
     assert_close(b.forces.core_stress_pa, a.forces.core_stress_pa, 1e-12);
 }
 
 /* -- commands ------------------------------------------------------------------------------------------------------ */
-
 #define SHORT SIX_FLOORS "--set motion.record=builtin:elcentro-like --set sim.duration_s=4 --set sim.accuracy=coarse "
 #define WIDE  "--set design.variables=gaps,thickness,bumper,side --set design.gap_zones=3 "
 
@@ -181,9 +166,8 @@ static int end_run(void **state)
 TEST(a_named_design_that_cannot_be_predicted_is_said_to_be_so)
 {
     OWNED(run_free) Run run;
-    char path[PATH_MAX];
     long n = 0;
-    CHECK_OK(run_read(&run, path_of("run", path), &err), &err);
+    CHECK_OK(run_read(&run, there("run"), &err), &err);
     for (size_t k = 0; k <= run.schema.n_obj; k++)
         n += run_is_unpredictable(&run, k < run.schema.n_obj ? run_best(&run, k) : run_knee(&run));
     for (const char *at = said; (at = strstr(at, "  unpredictable\n")); at++)
@@ -195,24 +179,19 @@ TEST(every_command_follows_the_variables_of_a_run)
 {
     static const char HEADER[] =
         "id,gap_zone_1_m,gap_zone_2_m,gap_zone_3_m,t_base_m,t_top_m,bumper_log10_n_m,side_m,j1_m,";
-    static const char *const COMMANDS[] = {
-        "choose @/run --csv @/chosen.csv",
+    FREED char *front = text_of(there("run/front.csv"));
+    assert_int_equal(strncmp(front, HEADER, sizeof HEADER - 1), 0);
+    FOR_EACH (
+        const char *, command, "choose @/run --csv @/chosen.csv",
         "simulate configs/quick.ini " SHORT WIDE "--json --design @/run:knee",
         "simulate configs/quick.ini " SHORT WIDE "--design @/run/front.csv",
-        "simulate configs/quick.ini " SHORT WIDE "--replicates 2 --design @/run:knee",
-        "evaluate @/run --design knee",
-        "polish @/run --design knee --max-evals 24",
-        "building configs/quick.ini " WIDE "--design @/run:knee",
+        "simulate configs/quick.ini " SHORT WIDE "--replicates 2 --design @/run:knee", "evaluate @/run --design knee",
+        "polish @/run --design knee --max-evals 24", "building configs/quick.ini " WIDE "--design @/run:knee",
         "check configs/quick.ini " WIDE SHORT,
         "optimize configs/quick.ini --out @/again --max-evals 20 --set search.polish=0 --set search.start=@/run " WIDE
             SHORT,
-        "report @/run",
-    };
-    char path[PATH_MAX];
-    FREED char *front = text_of(path_of("run/front.csv", path));
-    assert_int_equal(strncmp(front, HEADER, sizeof HEADER - 1), 0);
-    for (size_t i = 0; i < sizeof COMMANDS / sizeof COMMANDS[0]; i++) {
-        free(output_of("%s", COMMANDS[i]));
+        "report @/run") {
+        free(output_of("%s", *command));
     }
 }
 

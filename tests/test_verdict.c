@@ -1,7 +1,6 @@
 /* The verdict on a design: the same words everywhere, and every number of it as independent simulations have it. */
 #include "runs.h"
 
-#include "base/stat.h"
 #include "evaluate/consequences.h"
 #include "report/verdict.h"
 
@@ -59,37 +58,27 @@ static double number_behind(const char *text, const char *after, const char *wor
 
 TEST(the_verdict_is_the_same_at_the_end_of_every_command_in_the_report_and_in_the_dossier)
 {
-    static const char *const COMMANDS[] = {"optimize @/run", "choose @/run", "evaluate @/run --design knee"};
-    char *page, line[6100];
-    for (size_t i = 0; i < N_OF(COMMANDS); i++) {
-        FREED char *said = output_of("%s", COMMANDS[i]);
+    FOR_EACH (const char *, command, "optimize @/run", "choose @/run", "evaluate @/run --design knee") {
+        FREED char *said = output_of("%s", *command);
         for (size_t k = 0; k < N_OF(sentence); k++)
-            if (!strstr(said, sentence[k]))
-                fail_msg("%s does not say: %s", COMMANDS[i], sentence[k]);
+            assert_words(said, sentence[k]);
     }
     free(output_of("report @/run --out @/page.html"));
-    page = read_in_place("page.html");
+    FREED char *page = read_in_place("page.html");
     json_auto_t *run = json_loads(strchr(strstr(page, "id=\"run\">"), '>') + 1, JSON_DISABLE_EOF_CHECK, NULL);
     assert_string_equal(json_string_value(json_object_get(json_object_get(run, "detail"), "verdict")), verdict);
-    free(page);
     free(output_of("report @/run --dossier @/d.html"));
-    page = read_in_place("d.html");
-    for (size_t k = 0; k < 4; k++) { /* the fifth has signs that a page escapes */
-        snprintf(line, sizeof line, "<p>%s</p>", sentence[k]);
-        assert_non_null(strstr(page, line));
-    }
-    free(page);
+    for (size_t k = 0; k < 4; k++) /* the fifth has signs that a page escapes */
+        expect_file("d.html", brief("<p>%s</p>", sentence[k]));
 }
 
 /* As a command that says nothing but the design: without the file it is found anew, with the same words. */
 TEST(a_verdict_that_is_not_stored_is_found_again_word_for_word)
 {
-    char *said = output_of("evaluate @/run --design knee"), path[128];
-    snprintf(path, sizeof path, "%s/run/verdicts.json", place.folder);
-    assert_int_equal(unlink(path), 0);
+    FREED char *said = output_of("evaluate @/run --design knee");
+    assert_int_equal(unlink(there("run/verdicts.json")), 0);
     FREED char *again = output_of("evaluate @/run --design knee");
     assert_string_equal(said, again);
-    free(said);
 }
 
 TEST(factors_are_medians_over_the_records_of_simulations_one_by_one)
@@ -102,7 +91,6 @@ TEST(factors_are_medians_over_the_records_of_simulations_one_by_one)
         for (size_t k = 0; k < N_OF(KEYS); k++) {
             double ratio[N_RECORDS];
             size_t better = 0;
-            char wanted[80], head[80];
             for (size_t r = 0; r < N_RECORDS; r++) {
                 json_auto_t *own = simulated(r, "@/run:knee", ""), *other = NULL;
                 if (o < 2)
@@ -113,9 +101,9 @@ TEST(factors_are_medians_over_the_records_of_simulations_one_by_one)
                 better += ratio[r] < 0.999;
             }
             const char *text = o < 2 ? sentence[0] : strstr(said, "Against no core");
-            snprintf(head, sizeof head, "gainst %s ", OTHERS[o]);
+            FREED char *head = formatted("gainst %s ", OTHERS[o]);
             assert_close(number_behind(text, head, NAMES[k]), 0.5 * (ratio[0] + ratio[1]), 5e-3);
-            snprintf(wanted, sizeof wanted, "(%s%zu of %d)", o + k ? "" : "better under ", better, N_RECORDS);
+            FREED char *wanted = formatted("(%s%zu of %d)", o + k ? "" : "better under ", better, N_RECORDS);
             const char *at = strstr(strstr(text, head), NAMES[k]);
             if (strncmp(strchr(at, '('), wanted, strlen(wanted)) != 0)
                 fail_msg("%s: not '%s'", at, wanted);
@@ -125,7 +113,6 @@ TEST(factors_are_medians_over_the_records_of_simulations_one_by_one)
 /* Of what the last sentence sets, the effects: without its remedies, and on a mat that weight alone holds down. */
 TEST(the_model_is_that_of_the_settings_that_the_last_sentence_asks_for)
 {
-    static const char *const EFFECTS[] = {"core.theory=", "core.foundation=", "core.wall=", "contact.", "building."};
     char more[1200] = "", *anchors;
     json_auto_t *own = simulated(0, "@/run:knee", "");
     assert_close(number_behind(sentence[1], strstr(sentence[1], "instead of") ? "instead of" : "need:", "J1 "),
@@ -136,8 +123,8 @@ TEST(the_model_is_that_of_the_settings_that_the_last_sentence_asks_for)
         const char *value = at + 7 + (at[7] == '\'');
         end = strstr(value, " --set ");
         end = end ? end : value + strlen(value);
-        for (size_t i = 0; i < N_OF(EFFECTS); i++)
-            if (strncmp(value, EFFECTS[i], strlen(EFFECTS[i])) == 0)
+        FOR_EACH (const char *, effect, "core.theory=", "core.foundation=", "core.wall=", "contact.", "building.")
+            if (strncmp(value, *effect, strlen(*effect)) == 0)
                 strncat(more, at, (size_t)(end - at));
     }
     if ((anchors = strstr(more, "anchors=")))
@@ -150,19 +137,16 @@ TEST(the_model_is_that_of_the_settings_that_the_last_sentence_asks_for)
 
 TEST(as_built_is_the_mean_and_deviation_of_its_structures)
 {
-    char more[120], figure[64], *at;
-    snprintf(more, sizeof more, "--replicates %d --set sim.gap_tolerance_m=%g", VERDICT_REPLICATES, VERDICT_GAP_M);
-    json_t *o = simulated(0, "@/run:knee", more), *all = json_object_get(o, "replicates"),
-           *own = simulated(0, "@/run:knee", "");
+    char *at;
+    FREED char *more = formatted("--replicates %d --set sim.gap_tolerance_m=%g", VERDICT_REPLICATES, VERDICT_GAP_M);
+    json_auto_t *o = simulated(0, "@/run:knee", more), *own = simulated(0, "@/run:knee", "");
+    const json_t *all = json_object_get(o, "replicates");
     const double mean = number(json_object_get(all, "mean"), "j1_m"), sd = number(json_object_get(all, "sd"), "j1_m");
     at = strstr(sentence[2], "J1 ") + 3;
-    snprintf(figure, sizeof figure, "%.*s", (int)strcspn(at, "m"), at);
     assert_true(fabs(atof(at) - mean) <= sd); /* as many digits as the deviation leaves */
-    assert_close(atof(strstr(figure, "\u00b1") + 2), sd, 0.5);
+    assert_close(atof(strstr(brief("%.*s", (int)strcspn(at, "m"), at), "\u00b1") + 2), sd, 0.5);
     const double off = 100 * (mean / number(own, "j1_m") - 1); /* [%] */
     assert_true(fabs(atof(strstr(sentence[2], "on average ") + 11) - off) <= 0.5 + 1e-9);
-    json_decref(o);
-    json_decref(own);
 }
 
 TEST(demands_are_the_largest_of_all_records_over_their_limits_in_descending_order)

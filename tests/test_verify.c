@@ -3,9 +3,7 @@
 
 static void write_design(const char *name)
 {
-    FREED char *path = in_place(name);
-    FILE *f = fopen(path, "w");
-    assert_non_null(f);
+    FILE *f = opened(there(name), "w");
     for (int j = 0; j < 20; j++)
         fprintf(f, "gap_%02d_m,", j + 1);
     fprintf(f, "t_base_m,t_top_m\n");
@@ -48,8 +46,7 @@ TEST(designs_and_records_make_a_list_in_their_order)
 {
     write_design("d.csv");
     json_auto_t *v = json_of("evaluate --full-model configs/quick.ini --design @/d.csv --set sim.duration_s=5 --record "
-                             "builtin:kobe-like --record "
-                             "builtin:elcentro-like --json");
+                             "builtin:kobe-like --record builtin:elcentro-like --json");
     assert_int_equal((int)json_array_size(v), 4);
     for (size_t i = 0; i < 4; i++) {
         const json_t *o = json_array_get(v, i);

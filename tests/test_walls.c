@@ -1,7 +1,5 @@
 /* Walls of the core beyond their buckling stress (scene/wall.h): limits in closed form, the section summed strip by
  * strip, and simulations whose stiffness and stress agree. */
-#include "check.h"
-
 #include "scene/core_beam.h"
 #include "scene/wall.h"
 #include "scene_options.h"
@@ -92,25 +90,18 @@ TEST(what_is_left_of_a_section_is_the_sum_of_its_strips_at_the_stress_that_it_ha
 static SimResult simulated(SceneOptions *o, SceneKind kind, Engine engine)
 {
     SimResult r;
-    SimWorker *worker;
-    OWNED(scenario_close) Scenario w = {0};
-    Settings s;
     double x[N + 2];
-    settings_defaults(&s);
-    snprintf(s.motion.record, sizeof s.motion.record, "builtin:sylmar-like");
-    s.motion.pga_g = 0.3;
     for (int j = 0; j < N; j++)
         x[j] = 0.006 * (j + 1);
     x[N] = 0.03;
     x[N + 1] = 0.0216;
     o->sim.duration_s = 8;
     o->sim.engine = engine;
-    CHECK_OK(scenario_of(&w, o, &s.motion, &err), &err);
-    CHECK_OK(sim_worker_create(&worker, w.scene, &err), &err);
+    OWNED(motion_free) Motion motion = motion_of("builtin:sylmar-like", 0.3, 1);
+    OWNED(one_scene_free) OneScene stage = one_scene_of(o, &motion);
     for (int again = engine == ENGINE_FAST ? 0 : 1; again < 2; again++) /* what a run was before does not matter */
-        CHECK_OK(sim_run(worker, kind, x, &r, &err), &err);
-    assert_int_equal(r.outcome, RUN_OK);
-    sim_worker_free(worker);
+        CHECK_OK(sim_run(stage.worker, kind, x, &r, &err), &err);
+    assert_ran(&r);
     return r;
 }
 

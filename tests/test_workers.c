@@ -3,12 +3,9 @@
 
 static void write_external(const char *name, const char *command, const char *search)
 {
-    char text[512];
-    snprintf(text, sizeof text,
-             "[problem]\nkind = external\ncommand = %s\nvariables = 3\nobjectives = 2\n"
-             "[search]\ninitial = 12\npopulation = 12\nthreads = 2\n%s",
-             command, search);
-    write_in_place(name, text);
+    write_in_place(name, brief("[problem]\nkind = external\ncommand = %s\nvariables = 3\nobjectives = 2\n"
+                               "[search]\ninitial = 12\npopulation = 12\nthreads = 2\n%s",
+                               command, search));
 }
 
 static size_t count_failures(const json_t *status)
@@ -24,9 +21,7 @@ TEST(no_design_is_left_out_whatever_its_message)
 {
     static const char *const MODES[] = {"umlauts", "latin"};
     for (size_t i = 0; i < 2; i++) {
-        char command[64];
-        snprintf(command, sizeof command, "sh tests/worker.sh %s", MODES[i]);
-        write_external("words.ini", command, "max_evals = 24\n");
+        write_external("words.ini", brief("sh tests/worker.sh %s", MODES[i]), "max_evals = 24\n");
         free(output_of("optimize @/words.ini --out @/words"));
         json_auto_t *all = json_of("export @/words --json"), *status = json_of("status @/words --json");
         assert_int_equal(json_array_size(json_object_get(all, "evaluations")), 24);
@@ -34,9 +29,7 @@ TEST(no_design_is_left_out_whatever_its_message)
         FREED char *csv = all_of("words");
         json_auto_t *text = json_string(csv); /* refuses what is no UTF-8 */
         assert_non_null(text);
-        char remove[128];
-        snprintf(remove, sizeof remove, "rm -r '%s/words'", place.folder);
-        assert_int_equal(system(remove), 0);
+        expect_shell("rm -r '%s/words'", place.folder);
     }
 }
 
@@ -73,13 +66,12 @@ TEST(a_signal_that_was_ignored_at_the_start_stays_ignored)
 TEST(designs_that_are_asked_together_have_the_answers_of_those_asked_one_by_one)
 {
     static const char HOW[][9] = {"alone", "together"};
-    char text[700];
     for (int i = 0; i < 2; i++) {
-        snprintf(text, sizeof text,
-                 "[problem]\nkind = external\ncommand = python3 tests/batch_worker.py %s %s/sizes-%s\nvariables = 2\n"
-                 "objectives = 2\ntimeout_s = 4\n[search]\ninitial = 40\npopulation = 20\nmax_evals = 120\n"
-                 "threads = %d\nfailures_max = 0\n",
-                 HOW[i], place.folder, HOW[i], 1 + i);
+        FREED char *text = formatted(
+            "[problem]\nkind = external\ncommand = python3 tests/batch_worker.py %s %s/sizes-%s\nvariables = 2\n"
+            "objectives = 2\ntimeout_s = 4\n[search]\ninitial = 40\npopulation = 20\nmax_evals = 120\n"
+            "threads = %d\nfailures_max = 0\n",
+            HOW[i], place.folder, HOW[i], 1 + i);
         write_in_place("batch.ini", text);
         free(output_of("optimize @/batch.ini --out @/%s", HOW[i]));
     }

@@ -1,7 +1,5 @@
 /* Storeys that yield: closed forms, reference numbers, energies, and every engine against the other. */
-
 #include "one_scene.h"
-#include "sim/engine.h"
 
 /* ---- one storey ------------------------------------------------------------------------------------------------- */
 
@@ -38,9 +36,7 @@ static SimResult run(Engine engine, const SimModel *model, const Motion *motion,
     SimResult r;
     const EngineOptions options = {.duration = duration, .accuracy = ACCURACY_FINE};
     CHECK_OK(engine_entry(engine)->run(model, motion, &options, &r, &err), &err);
-    if (r.outcome != RUN_OK)
-        print_error("%s: %s\n", engine_entry(engine)->name, r.reason);
-    assert_int_equal(r.outcome, RUN_OK);
+    assert_ran(&r);
     assert_less(r.energy_balance_error, 1e-5);
     return r;
 }
@@ -208,28 +204,28 @@ static SimResult tower_run(const Tower *t, SceneKind kind)
 {
     SimResult r;
     CHECK_OK(sim_run(t->worker, kind, t->x, &r, &err), &err);
-    if (r.outcome != RUN_OK)
-        print_error("%s\n", r.reason);
-    assert_int_equal(r.outcome, RUN_OK);
+    assert_ran(&r);
     return r;
+}
+
+static Tower fine_tower(Engine engine, double yield_drift)
+{
+    Tower t = {.settings = paper_settings()};
+    t.settings.sim.accuracy = ACCURACY_FINE;
+    t.settings.sim.forces = FORCES_YES;
+    t.settings.sim.engine = engine;
+    t.settings.building.yield_drift = yield_drift;
+    return t;
 }
 
 /* The early window of the reference: Sylmar, 0 to 11 s. */
 static void early_window(Tower *t, Engine engine)
 {
-    *t = (Tower){0};
-    paper_defaults(&t->settings);
+    *t = fine_tower(engine, 0.006);
     snprintf(t->settings.motion.record, OPTION_TEXT_MAX, "../shared/records/northridge_sylmar_ns.csv");
-    if (access(t->settings.motion.record, R_OK) != 0) {
-        print_message("skipped: %s is not there\n", t->settings.motion.record);
-        skip();
-    }
+    need_file(t->settings.motion.record);
     t->settings.motion.stretch = 3.0;
     t->settings.sim.duration_s = 11;
-    t->settings.sim.accuracy = ACCURACY_FINE;
-    t->settings.sim.forces = FORCES_YES;
-    t->settings.sim.engine = engine;
-    t->settings.building.yield_drift = 0.006;
     tower_open(t, 0.030, 0.0216);
 }
 
@@ -286,14 +282,9 @@ TEST(storeys_have_the_stiffness_of_the_first_mode)
 /* A motion of the program, 20 s. */
 static void builtin_tower(Tower *t, Engine engine, double yield_drift)
 {
-    *t = (Tower){0};
-    paper_defaults(&t->settings);
+    *t = fine_tower(engine, yield_drift);
     t->settings.sim.duration_s = 20;
-    t->settings.sim.accuracy = ACCURACY_FINE;
-    t->settings.sim.forces = FORCES_YES;
     t->settings.sim.filtered = 1;
-    t->settings.sim.engine = engine;
-    t->settings.building.yield_drift = yield_drift;
     snprintf(t->settings.motion.record, OPTION_TEXT_MAX, "builtin:sylmar-like");
 }
 
@@ -324,17 +315,11 @@ TEST(storeys_that_do_not_reach_their_yield_drift_change_nothing)
 
 static void assert_alike(const SimResult *r, const SimResult *wanted, double tolerance)
 {
-    assert_close(r->j1_m, wanted->j1_m, tolerance);
-    assert_close(r->j2_m, wanted->j2_m, tolerance);
-    assert_close(r->j3_g, wanted->j3_g, tolerance);
+    assert_close_in(*r, *wanted, tolerance, j1_m, j2_m, j3_g);
     assert_true(wanted->filtered_known);
-    assert_close(r->j3_filtered_g, wanted->j3_filtered_g, tolerance);
-    assert_close(r->ed1_pct, wanted->ed1_pct, tolerance);
-    assert_close(r->ed_hysteresis_pct, wanted->ed_hysteresis_pct, tolerance);
-    assert_close(r->plastic_drift_ratio, wanted->plastic_drift_ratio, tolerance);
-    assert_close(r->residual_drift_ratio, wanted->residual_drift_ratio, tolerance);
-    assert_close(r->forces.building_base_shear_n, wanted->forces.building_base_shear_n, 20 * tolerance);
-    assert_close(r->forces.building_overturning_nm, wanted->forces.building_overturning_nm, 20 * tolerance);
+    assert_close_in(*r, *wanted, tolerance, j3_filtered_g, ed1_pct, ed_hysteresis_pct, plastic_drift_ratio,
+                    residual_drift_ratio);
+    assert_close_in(*r, *wanted, 20 * tolerance, forces.building_base_shear_n, forces.building_overturning_nm);
 }
 
 TEST(both_engines_agree_where_storeys_lose_strength_and_stiffness)
@@ -366,7 +351,7 @@ static SimResult run_few(Engine engine, SceneKind kind, double yield_drift, doub
     t.x[6] = t.x[7] = 0.02;
     sim_worker_device(t.worker, &(LinearDevice){.link_ns_m = 3e5, .tmd_hz = 1, .tmd_damping = 0.1});
     CHECK_OK(sim_run(t.worker, kind, t.x, &r, &err), &err);
-    assert_int_equal(r.outcome, RUN_OK);
+    assert_ran(&r);
     return r;
 }
 
@@ -403,10 +388,7 @@ TEST(equipment_on_a_floor_that_yields_feels_the_same_by_both_engines)
     char folder[] = "/tmp/yielding-XXXXXX", path[64];
     assert_non_null(mkdtemp(folder));
     snprintf(path, sizeof path, "%s/storeys.csv", folder);
-    FILE *f = fopen(path, "w");
-    assert_non_null(f);
-    fputs("height_m,mass_kg,stiffness_n_m\n3,2e5,8e7\n", f);
-    fclose(f);
+    write_to(path, "height_m,mass_kg,stiffness_n_m\n3,2e5,8e7\n");
     for (int e = 0; e < 2; e++) {
         Tower t;
         builtin_tower(&t, ENGINES[e], 0.003);
@@ -419,8 +401,7 @@ TEST(equipment_on_a_floor_that_yields_feels_the_same_by_both_engines)
     unlink(path);
     rmdir(folder);
     assert_less(20, r[0].ed_hysteresis_pct);
-    assert_close(r[0].j3_g, r[1].j3_g, 1e-5);
-    assert_close(r[0].j3_filtered_g, r[1].j3_filtered_g, 1e-5);
+    assert_close_in(r[0], r[1], 1e-5, j3_g, j3_filtered_g);
 }
 
 /* Dashpots that hardly resist leave the building alone. */
@@ -433,7 +414,7 @@ TEST(links_that_do_nothing_leave_the_yielding_building_alone)
     tower_open(&t, 0.030, 0.0216);
     sim_worker_device(t.worker, &(LinearDevice){.link_ns_m = 1e-3});
     CHECK_OK(sim_run(t.worker, SCENE_LINKS, t.x, &links, &err), &err);
-    assert_int_equal(links.outcome, RUN_OK);
+    assert_ran(&links);
     assert_less(5, bare.ed_hysteresis_pct);
     links.ed_hysteresis_pct *= links.input_energy_j / bare.input_energy_j; /* the ground moves the core as well */
     links.ed1_pct *= links.input_energy_j / bare.input_energy_j;

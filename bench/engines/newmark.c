@@ -107,8 +107,7 @@ Status engine_newmark(const SimModel *model, const Motion *motion, const EngineO
     static const FixedStepMethod METHOD = {{5e-4, 1e-4, 2e-5}, 0.5, 0.5, prepare, advance};
     Newmark k = {0};
     Status status = implicit_create(&k.contacts, model->n, 1, err);
-    if (status == STATUS_OK)
-        status = fixed_step_run(&METHOD, &k, model, motion, options, result);
+    THEN(status, fixed_step_run(&METHOD, &k, model, motion, options, result));
     implicit_free(&k.contacts);
     return status;
 }

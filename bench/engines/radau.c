@@ -194,8 +194,7 @@ Status engine_radau(const SimModel *model, const Motion *motion, const EngineOpt
         return fail(err, STATUS_NO_MEMORY, "radau: no memory for its work space");
     set_method(r);
     Status status = implicit_create(&r->contacts, model->n, S, err);
-    if (status == STATUS_OK)
-        status = fixed_step_run(&METHOD, r, model, motion, options, result);
+    THEN(status, fixed_step_run(&METHOD, r, model, motion, options, result));
     implicit_free(&r->contacts);
     free(r);
     return status;

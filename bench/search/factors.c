@@ -244,8 +244,7 @@ static Status run_problem(Tables *t, size_t which, Err *err)
     Course reference = {0};
     Problem p;
     Status status = family_open(&p, which, err);
-    if (status == STATUS_OK)
-        status = reference_make(&p, &reference, err);
+    THEN(status, reference_make(&p, &reference, err));
     for (size_t i = 0; status == STATUS_OK && i < n; i++)
         status = run_seed(t, &p, &reference, i, factor, err);
     for (size_t b = 0; status == STATUS_OK && b < n_budgets(t->plan); b++)

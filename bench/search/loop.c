@@ -372,12 +372,10 @@ static Status run_seed(const LoopPlan *plan, const Problem *p, uint32_t seed, FI
 {
     Loop l = {.plan = plan, .problem = p, .seed = seed, .curve.out = out};
     Status status = loop_open(&l, err);
-    if (status == STATUS_OK)
-        status = run_loop(&l, err);
+    THEN(status, run_loop(&l, err));
     queue_close(l.queue);
     l.queue = NULL;
-    if (status == STATUS_OK)
-        status = run_search(&l, err);
+    THEN(status, run_search(&l, err));
     loop_close(&l);
     return status;
 }

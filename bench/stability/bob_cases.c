@@ -1,6 +1,7 @@
 /* Properties that a mass in front of a wall shows, against closed forms and the oracle. */
 #include "bench/stability/trial.h"
 
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
@@ -71,11 +72,10 @@ static void hertz_impact(Trial *t)
         Thrown out;
         throw_mass(t, &x, &out);
         const SimResult *r = &out.result;
-        trial_compare(t, r, rebound(&out), 1, 1, trial_allowed(t, 1e-4, 2e-2), "rebound ratio of r = 1");
-        trial_compare(t, r, r->indentation_max_m, out.penetration, out.penetration, trial_allowed(t, 1e-3, 3e-2),
-                      "maximum indentation");
-        trial_compare(t, r, r->j3_g * 9.81 * x.mass, x.k * pow(out.penetration, 1.5), x.k * pow(out.penetration, 1.5),
-                      trial_allowed(t, 1e-3, 5e-2), "largest force");
+        trial_close(t, r, rebound(&out), 1, trial_allowed(t, 1e-4, 2e-2), "rebound ratio of r = 1");
+        trial_close(t, r, r->indentation_max_m, out.penetration, trial_allowed(t, 1e-3, 3e-2), "maximum indentation");
+        trial_close(t, r, r->j3_g * 9.81 * x.mass, x.k * pow(out.penetration, 1.5), trial_allowed(t, 1e-3, 5e-2),
+                    "largest force");
         for (int late = 0; late < 2; late++) {
             const double off = trial_allowed(t, 2e-3, 5e-2);
             x.until = out.closing + out.duration * (late ? 1 + off : 1 - off);
@@ -114,18 +114,24 @@ static void bumper_impact(Trial *t)
                 Thrown out;
                 throw_mass(t, &x, &out);
                 const SimResult *r = &out.result;
-                trial_compare(t, r, rebound(&out), want, want, trial_allowed(t, 1e-4, 2e-2), "rebound ratio, %g N/m",
-                              bumper);
+                trial_close(t, r, rebound(&out), want, trial_allowed(t, 1e-4, 2e-2), "rebound ratio, %g N/m", bumper);
                 if (damped)
                     continue;
                 const double depth = approach_of(&law, out.energy);
                 const double force = contact_force(&law, x.mass, depth, 0, 1).elastic;
-                trial_compare(t, r, r->indentation_max_m + r->bumper_compression_m, depth, depth,
-                              trial_allowed(t, 1e-3, 3e-2), "largest approach, %g N/m", bumper);
-                trial_compare(t, r, r->j3_g * 9.81 * x.mass, force, force, trial_allowed(t, 1e-3, 5e-2),
-                              "largest force, %g N/m", bumper);
+                trial_close(t, r, r->indentation_max_m + r->bumper_compression_m, depth, trial_allowed(t, 1e-3, 3e-2),
+                            "largest approach, %g N/m", bumper);
+                trial_close(t, r, r->j3_g * 9.81 * x.mass, force, trial_allowed(t, 1e-3, 5e-2), "largest force, %g N/m",
+                            bumper);
             }
     }
+}
+
+/* By what the engine's tolerance is: a step, steps per contact, or relative. */
+static double tolerance_of(const Trial *t, double step, double steps_per_contact, double relative)
+{
+    const int kind = trial_engine(t)->tolerance;
+    return kind == TOLERANCE_STEP ? step : kind == TOLERANCE_RELATIVE ? relative : steps_per_contact;
 }
 
 /* Worst error of the rebound ratio at r = 0.7 over impacts that begin anywhere in a step. */
@@ -136,17 +142,7 @@ static double rebound_error(Trial *t, double factor)
         Throw x = throw_of(1000, STEEL, 0.3 * (1 + 0.037 * i), 0.7);
         Thrown out;
         const double duration = contact_hertz_duration(x.k, x.mass, x.v);
-        switch (trial_engine(t)->tolerance) {
-        case TOLERANCE_STEP:
-            x.tolerance = duration * factor / 15;
-            break;
-        case TOLERANCE_STEPS_PER_CONTACT:
-            x.tolerance = 8 / factor;
-            break;
-        case TOLERANCE_RELATIVE:
-            x.tolerance = 1e-4 * factor * factor * factor;
-            break;
-        }
+        x.tolerance = tolerance_of(t, duration * factor / 15, 8 / factor, 1e-4 * factor * factor * factor);
         throw_mass(t, &x, &out);
         trial_note(t, &out.result, 0, 1, "rebound at r = 0.7");
         worst = fmax(worst, fabs(rebound(&out) - contact_rebound(0.45)));
@@ -201,17 +197,7 @@ static void long_steps(Trial *t)
             Throw x = throw_of(1000, STEEL, 0.1 * (1 + 0.13 * i), 1 - 0.5 * (i % 3));
             Thrown out;
             const double duration = contact_hertz_duration(x.k, x.mass, x.v);
-            switch (trial_engine(t)->tolerance) {
-            case TOLERANCE_STEP:
-                x.tolerance = duration * LENGTH[l];
-                break;
-            case TOLERANCE_STEPS_PER_CONTACT:
-                x.tolerance = 1 / LENGTH[l];
-                break;
-            case TOLERANCE_RELATIVE:
-                x.tolerance = 1e-3 * LENGTH[l];
-                break;
-            }
+            x.tolerance = tolerance_of(t, duration * LENGTH[l], 1 / LENGTH[l], 1e-3 * LENGTH[l]);
             throw_mass(t, &x, &out);
             const SimResult *r = &out.result;
             runs++;
@@ -237,6 +223,19 @@ typedef struct {
     double fine, standard;                                   /* allowed; 0: 1e-3, 3e-2 */
 } Run;
 
+/* The paper's law at r = 0.7. */
+static Run run_of(Bob bob, double accel[], size_t n, double dt, double duration, double contact_duration,
+                  double free_step)
+{
+    return (Run){.bob = bob,
+                 .contact = paper_law(STEEL, 0.7, 1e-3),
+                 .motion = {.accel = accel, .n = n, .dt_s = dt},
+                 .duration = duration,
+                 .contact_duration = contact_duration,
+                 .free_step = free_step,
+                 .tolerance = -1};
+}
+
 static SimResult run_engine(Trial *t, const Run *x)
 {
     SimModel model;
@@ -249,10 +248,15 @@ static SimResult run_engine(Trial *t, const Run *x)
 }
 
 /* Both accuracies; the last result, at standard. */
-static SimResult against_oracle(Trial *t, const Run *x, const char *what)
+__attribute__((format(printf, 3, 4))) static SimResult against_oracle(Trial *t, const Run *x, const char *format, ...)
 {
     Oracle o;
     SimResult r = {0};
+    char what[80];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(what, sizeof what, format, list);
+    va_end(list);
     oracle_run(&o, &x->bob, &x->contact, &x->motion, x->duration, x->free_step, x->contact_duration / 1000);
     TRIAL_EACH_ACCURACY(t)
     {
@@ -260,7 +264,7 @@ static SimResult against_oracle(Trial *t, const Run *x, const char *what)
         const double energy = fmax(x->energy_scale, o.turnover);
         const double allowed = trial_allowed(t, x->fine > 0 ? x->fine : 1e-3, x->standard > 0 ? x->standard : 3e-2);
         trial_compare(t, &r, r.kinetic_strain_j, o.kinetic_strain, energy, allowed, "%s: energy at the end", what);
-        trial_compare(t, &r, r.j1_m, o.peak_u, o.peak_u, allowed, "%s: largest displacement", what);
+        trial_close(t, &r, r.j1_m, o.peak_u, allowed, "%s: largest displacement", what);
         trial_compare(t, &r, r.input_energy_j, o.input, energy, allowed, "%s: input energy", what);
         trial_compare(t, &r, r.clamp_j, o.clamp, energy, allowed, "%s: energy removed by the no-tension condition",
                       what);
@@ -281,24 +285,18 @@ static void grazing(Trial *t)
     /* the pull ramps up over one interval, from t = 3 dt */
     const double v4 = v - pull * dt / 2, x4 = v * dt + v * dt + v * dt - pull * dt * dt / 6;
     const double top = x4 + v4 * v4 / (2 * pull);
-    Run x = {.bob = {.mass = m},
-             .contact = paper_law(STEEL, 0.7, 1e-3),
-             .motion = {.accel = accel, .n = N, .dt_s = dt},
-             .duration = 0.5,
-             .free_step = 1e-4,
-             .tolerance = -1,
-             .fine = 5e-3,
-             .standard = 0.1, /* the speed at the wall is the root of how deep the gap would be passed */
-             .energy_scale = 0.5 * m * v * v};
+    Run x = run_of((Bob){.mass = m}, accel, N, dt, 0.5, 0, 1e-4);
+    x.fine = 5e-3;
+    x.standard = 0.1; /* the speed at the wall is the root of how deep the gap would be passed */
+    x.energy_scale = 0.5 * m * v * v;
     for (int e = 3; e <= 15; e++)
         for (int side = -1; side <= 1; side += 2) {
-            char what[60];
             x.bob.gap = top * (1 + side * pow(10, -e));
             x.contact_duration = contact_hertz_duration(STEEL, m, fmax(sqrt(2 * pull * top * pow(10, -e)), 1e-3));
-            snprintf(what, sizeof what, "gap = peak (1 %c 1e-%d)", side > 0 ? '+' : '-', e);
-            const SimResult r = against_oracle(t, &x, what);
+            const char sign = side > 0 ? '+' : '-';
+            const SimResult r = against_oracle(t, &x, "gap = peak (1 %c 1e-%d)", sign, e);
             if (side > 0 && e < (t->engine == ENGINE_FAST ? 12 : 4)) /* the others' flight is not exact */
-                trial_note(t, &r, (double)r.impacts, 0.5, "%s: impacts", what);
+                trial_note(t, &r, (double)r.impacts, 0.5, "gap = peak (1 %c 1e-%d): impacts", sign, e);
         }
 }
 
@@ -310,16 +308,9 @@ static void start_at_the_wall(Trial *t)
     for (int i = 0; i < N; i++)
         accel[i] = -12 * sin(2 * M_PI * i / (N - 1.0));
     for (int f = 3; f <= 6; f += 3) {
-        char what[60];
-        snprintf(what, sizeof what, "no gap, at rest, v0 floor 1e-%d m/s", f);
-        const Run x = {.bob = {.mass = m, .omega = 20, .zeta = 0.03},
-                       .contact = paper_law(STEEL, 0.7, pow(10, -f)),
-                       .motion = {.accel = accel, .n = N, .dt_s = dt},
-                       .duration = 0.6,
-                       .contact_duration = duration,
-                       .free_step = 1e-5,
-                       .tolerance = -1};
-        against_oracle(t, &x, what);
+        Run x = run_of((Bob){.mass = m, .omega = 20, .zeta = 0.03}, accel, N, dt, 0.6, duration, 1e-5);
+        x.contact.v0_floor = pow(10, -f);
+        against_oracle(t, &x, "no gap, at rest, v0 floor 1e-%d m/s", f);
     }
 }
 
@@ -331,16 +322,10 @@ static void slow_touch_fast_pull_off(Trial *t)
     for (int i = 0; i < N; i++)
         accel[i] = i == 1 ? -v / dt : i < 10 ? 0 : i < 20 ? -20 : i < 24 ? 400 : 0;
     for (int r = 0; r < 3; r++) {
-        char what[60];
-        snprintf(what, sizeof what, "touch at 2 mm/s, pull at 400 m/s2, r = %g", 0.5 * r);
-        const Run x = {.bob = {.mass = m, .gap = v * 4 * dt},
-                       .contact = paper_law(STEEL, 0.5 * r, 1e-3),
-                       .motion = {.accel = accel, .n = N, .dt_s = dt},
-                       .duration = 0.07,
-                       .contact_duration = contact_hertz_duration(STEEL, m, 0.1),
-                       .free_step = 1e-5,
-                       .tolerance = -1};
-        against_oracle(t, &x, what);
+        const double duration = contact_hertz_duration(STEEL, m, 0.1);
+        Run x = run_of((Bob){.mass = m, .gap = v * 4 * dt}, accel, N, dt, 0.07, duration, 1e-5);
+        x.contact = paper_law(STEEL, 0.5 * r, 1e-3);
+        against_oracle(t, &x, "touch at 2 mm/s, pull at 400 m/s2, r = %g", 0.5 * r);
     }
 }
 
@@ -348,18 +333,11 @@ static void within_one_step(Trial *t)
 {
     const double m = 1, v = 10, duration = contact_hertz_duration(STEEL, m, v);
     for (int i = 0; i < 3; i++) {
-        char what[60];
         const double dt = duration * (i == 0 ? 137.1 : i == 1 ? 1.13e4 : 1.03e5);
         double accel[3] = {0, -v / dt, 0};
-        snprintf(what, sizeof what, "intervals of %.3g contact durations", dt / duration);
-        const Run x = {.bob = {.mass = m, .gap = 1.07 * v * dt},
-                       .contact = paper_law(STEEL, 0.7, 1e-3),
-                       .motion = {.accel = accel, .n = 3, .dt_s = dt},
-                       .duration = 6.9 * dt,
-                       .contact_duration = duration,
-                       .free_step = dt / 100,
-                       .tolerance = 0};
-        against_oracle(t, &x, what);
+        Run x = run_of((Bob){.mass = m, .gap = 1.07 * v * dt}, accel, 3, dt, 6.9 * dt, duration, dt / 100);
+        x.tolerance = 0;
+        against_oracle(t, &x, "intervals of %.3g contact durations", dt / duration);
     }
 }
 
@@ -370,18 +348,11 @@ static void step_does_not_divide(Trial *t)
     for (int i = 0; i < N; i++)
         accel[i] = 3 * sin(0.09 * i) + 2 * sin(0.31 * i);
     for (int i = 0; i < 4; i++) {
-        char what[60];
         const double dt = 0.0137 * (1 + 0.217 * i), duration = contact_hertz_duration(STEEL, 1e5, 0.3);
-        snprintf(what, sizeof what, "interval %.6g s, %.6g intervals long", dt, 71.37 + 0.41 * i);
-        const Run x = {.bob = {.mass = 1e5, .omega = 7, .zeta = 0.03, .gap = 0.05},
-                       .contact = paper_law(STEEL, 0.7, 1e-3),
-                       .motion = {.accel = accel, .n = N, .dt_s = dt},
-                       .duration = dt * (71.37 + 0.41 * i),
-                       .contact_duration = duration,
-                       .free_step = 1e-4,
-                       .standard = 0.1,
-                       .tolerance = -1};
-        against_oracle(t, &x, what);
+        const Bob bob = {.mass = 1e5, .omega = 7, .zeta = 0.03, .gap = 0.05};
+        Run x = run_of(bob, accel, N, dt, dt * (71.37 + 0.41 * i), duration, 1e-4);
+        x.standard = 0.1;
+        against_oracle(t, &x, "interval %.6g s, %.6g intervals long", dt, 71.37 + 0.41 * i);
     }
 }
 
@@ -396,17 +367,10 @@ static void damping_ratios(Trial *t)
     for (int z = 0; z < 6; z += t->size == SIZE_QUICK && z > 0 ? 2 : 1)
         for (int w = 0; w < 3; w++)
             for (int touch = 0; touch < 2; touch++) {
-                char what[80];
-                snprintf(what, sizeof what, "zeta = %.10g, w = %g, %s", ZETA[z], OMEGA[w], touch ? "touching" : "free");
-                const Run x = {.bob = {.mass = 1e4, .omega = OMEGA[w], .zeta = ZETA[z], .gap = touch ? 0.02 : 1e3},
-                               .contact = paper_law(STEEL, 0.7, 1e-3),
-                               .motion = {.accel = accel, .n = N, .dt_s = dt},
-                               .duration = 1.7,
-                               .contact_duration = duration,
-                               .free_step = 4e-4,
-                               .standard = 0.1,
-                               .tolerance = -1};
-                against_oracle(t, &x, what);
+                const Bob bob = {.mass = 1e4, .omega = OMEGA[w], .zeta = ZETA[z], .gap = touch ? 0.02 : 1e3};
+                Run x = run_of(bob, accel, N, dt, 1.7, duration, 4e-4);
+                x.standard = 0.1;
+                against_oracle(t, &x, "zeta = %.10g, w = %g, %s", ZETA[z], OMEGA[w], touch ? "touching" : "free");
             }
 }
 
@@ -422,18 +386,11 @@ static void half_periods(Trial *t)
     const int quick = t->size == SIZE_QUICK;
     for (int k = 1; k <= (quick ? 4 : 10); k += 3)
         for (int off = quick ? 0 : -1; off <= 1; off++) {
-            char what[60];
             const double h = k * M_PI / omega * (1 + 1e-9 * off);
-            snprintf(what, sizeof what, "interval %d pi / w", k);
-            Run x = {.bob = {.mass = 1, .omega = omega, .gap = 1e3},
-                     .energy_scale = 4.5 / (omega * omega),
-                     .contact = paper_law(STEEL, 0.7, 1e-3),
-                     .motion = {.accel = accel, .n = N, .dt_s = h},
-                     .duration = 14 * h,
-                     .contact_duration = h,
-                     .free_step = 2e-4};
-            against_oracle(t, &x,
-                           what); /* even intervals almost cancel: measured by the energy of the largest sample */
+            Run x = run_of((Bob){.mass = 1, .omega = omega, .gap = 1e3}, accel, N, h, 14 * h, h, 2e-4);
+            x.tolerance = 0;
+            x.energy_scale = 4.5 / (omega * omega); /* of the largest sample: even intervals almost cancel */
+            against_oracle(t, &x, "interval %d pi / w", k);
             if (trial_engine(t)->tolerance != TOLERANCE_STEP)
                 continue;
             /* a step as long as that cannot be accurate, but free vibration must neither grow nor die in silence */
@@ -441,8 +398,8 @@ static void half_periods(Trial *t)
             const SimResult early = run_engine(t, &x);
             x.duration = 414 * h;
             const SimResult late = run_engine(t, &x);
-            trial_compare(t, &late, late.kinetic_strain_j, early.kinetic_strain_j, early.kinetic_strain_j, 1e-3,
-                          "step %d pi / w: energy of 400 steps of free vibration", k);
+            trial_close(t, &late, late.kinetic_strain_j, early.kinetic_strain_j, 1e-3,
+                        "step %d pi / w: energy of 400 steps of free vibration", k);
         }
 }
 
@@ -455,18 +412,14 @@ static void static_rest(Trial *t)
         accel[i] = -load * fmin(1, (double)i * dt / 2);
     const double p = pow(m * load / STEEL, 2.0 / 3);
     const double period = 2 * M_PI / sqrt(1.5 * STEEL * sqrt(p) / m);
-    const Run x = {.bob = {.mass = m, .gap = 1e-9},
-                   .contact = paper_law(STEEL, 0.7, 1e-3),
-                   .motion = {.accel = accel, .n = (size_t)n, .dt_s = dt},
-                   .duration = (double)(n - 1) * dt,
-                   .tolerance = -1,
-                   .contact_duration = period / 2};
+    const Bob bob = {.mass = m, .gap = 1e-9};
+    const Run x = run_of(bob, accel, (size_t)n, dt, (double)(n - 1) * dt, period / 2, 0);
     TRIAL_EACH_ACCURACY(t)
     {
         const SimResult r = run_engine(t, &x);
         const double energy = m * load * p;
-        trial_compare(t, &r, pow(r.contact_stored_j / (0.4 * STEEL), 0.4), p, p, trial_allowed(t, 1e-6, 1e-4),
-                      "static indentation after %ld intervals", n);
+        trial_close(t, &r, pow(r.contact_stored_j / (0.4 * STEEL), 0.4), p, trial_allowed(t, 1e-6, 1e-4),
+                    "static indentation after %ld intervals", n);
         trial_compare(t, &r, r.kinetic_strain_j, 0, energy, trial_allowed(t, 1e-6, 1e-4), "energy of motion at rest");
         trial_note(t, &r, r.energy_balance_error, trial_allowed(t, 1e-4, 1e-3), "energy-balance error at rest");
         trial_note(t, &r, (double)r.impacts, 3, "contact onsets while resting");
@@ -484,13 +437,8 @@ static void endless_bounces(Trial *t)
         accel[i] = -g;
     const double end = fall * (1 + 2 * e / (1 - e)), p = pow(m * g / STEEL, 2.0 / 3);
     const double shortest = contact_hertz_duration(STEEL, m, sqrt(2 * g * h));
-    Run x = {.bob = {.mass = m, .gap = h},
-             .contact = {.k = STEEL, .a = contact_damping(e), .v0_floor = 1e-3},
-             .motion = {.accel = accel, .n = N, .dt_s = dt},
-             .contact_duration = shortest,
-             .free_step = 1e-3,
-             .tolerance = -1};
-    x.duration = 0.6 * end;
+    Run x = run_of((Bob){.mass = m, .gap = h}, accel, N, dt, 0.6 * end, shortest, 1e-3);
+    x.contact.a = contact_damping(e);
     against_oracle(t, &x, "after the first bounces");
     x.duration = end + 1;
     TRIAL_EACH_ACCURACY(t)
@@ -533,23 +481,18 @@ static void many_steps(Trial *t)
     const double dt = 0.02, omega = 2 * M_PI;
     double accel[3] = {0, -1 / dt, 0}, seconds[2];
     t->accuracy = ACCURACY_STANDARD;
-    Run x = {.bob = {.mass = 1000, .omega = omega, .gap = 1e3},
-             .contact = paper_law(STEEL, 0.7, 1e-3),
-             .motion = {.accel = accel, .n = 3, .dt_s = dt},
-             .duration = 2.37 * dt,
-             .tolerance = trial_engine(t)->tolerance == TOLERANCE_STEP ? dt : 0};
+    Run x = run_of((Bob){.mass = 1000, .omega = omega, .gap = 1e3}, accel, 3, dt, 2.37 * dt, 0, 0);
+    x.tolerance = tolerance_of(t, dt, 0, 0);
     const SimResult early = run_engine(t, &x);
     x.duration = n * dt;
     const SimResult late = run_engine(t, &x);
-    trial_compare(t, &late, late.kinetic_strain_j, early.kinetic_strain_j, early.kinetic_strain_j, 1e-3,
-                  "undamped energy after %g intervals", n);
+    trial_close(t, &late, late.kinetic_strain_j, early.kinetic_strain_j, 1e-3, "undamped energy after %g intervals", n);
     /* exp(-zeta w t) passes the least normal number long before the end, or never */
     for (int still = 0; still < 2; still++) {
         x.bob.zeta = still ? 0.9 : 1e-9;
         const SimResult r = time_engine(t, &x, &seconds[still]);
         if (still)
-            trial_compare(t, &r, r.damped_building_j, r.input_energy_j, r.input_energy_j, 1e-3,
-                          "energy damped in the end, of the input");
+            trial_close(t, &r, r.damped_building_j, r.input_energy_j, 1e-3, "energy damped in the end, of the input");
     }
     trial_note(t, NULL, seconds[1] / seconds[0], 3, "time of a run that dies away over that of one that does not");
 }
@@ -564,13 +507,9 @@ static void time_reversal(Trial *t)
         for (int sprung = 0; sprung < 2; sprung++) {
             double accel[N] = {0};
             accel[1] = accel[N - 2] = -v / dt;
-            Run x = {.bob = {.mass = m, .omega = sprung ? 2 : 0, .gap = 1e3},
-                     .contact = paper_law(STEEL, 1, 1e-3),
-                     .motion = {.accel = accel, .n = N, .dt_s = dt},
-                     .duration = (N - 1) * dt,
-                     .tolerance = -1,
-                     .contact_duration = contact_hertz_duration(STEEL, m, v),
-                     .free_step = 1e-4};
+            const double duration = contact_hertz_duration(STEEL, m, v);
+            Run x = run_of((Bob){.mass = m, .omega = sprung ? 2 : 0}, accel, N, dt, (N - 1) * dt, duration, 1e-4);
+            x.contact.a = 0; /* r = 1 */
             /* the gap at which the mass turns in the middle of the record: by bisection on the oracle */
             double low = 0.5 * v * middle, high = 1.2 * v * middle;
             for (int i = 0; i < 60; i++) {
@@ -634,8 +573,8 @@ static void simultaneous(Trial *t)
         trial_note(t, &first, first.impacts >= BALLS ? 0 : 1, 0.5, "all four touch");
         for (int i = 1; i < 4; i++) {
             const SimResult r = ball_row(t, ORDER[i], 0.15, NULL);
-            trial_compare(t, &r, r.kinetic_strain_j, first.kinetic_strain_j, first.kinetic_strain_j,
-                          trial_allowed(t, 1e-9, 1e-3), "energy with floors in another order");
+            trial_close(t, &r, r.kinetic_strain_j, first.kinetic_strain_j, trial_allowed(t, 1e-9, 1e-3),
+                        "energy with floors in another order");
             for (int j = 0; j < BALLS; j++)
                 for (int k = 0; k < BALLS; k++)
                     if (ORDER[i][j] == ORDER[0][k])
@@ -671,7 +610,6 @@ static const Case CASES[] = {
     {"step-does-not-divide", "intervals, steps and durations that do not divide each other", step_does_not_divide},
     {"damping-ratios", "damping 0, 1, above 1, and a rigid-body mode", damping_ratios},
     {"many-steps", "2e4, 2e5 or 1e7 intervals without drift, and no slower at denormal amplitudes", many_steps},
-    {"time-reversal", "with r = 1 and no damping a mirrored record brings the mass back to rest", time_reversal},
-};
+    {"time-reversal", "with r = 1 and no damping a mirrored record brings the mass back to rest", time_reversal}};
 
 const CaseGroup BOB_CASES = {CASES, sizeof CASES / sizeof CASES[0]};

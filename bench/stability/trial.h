@@ -64,6 +64,10 @@ __attribute__((format(printf, 5, 6))) void trial_note(Trial *t, const SimResult 
 __attribute__((format(printf, 7, 8))) void trial_compare(Trial *t, const SimResult *r, double actual, double wanted,
                                                          double scale, double allowed, const char *what, ...);
 
+/* The same with what is wanted as the scale. */
+#define trial_close(t, r, actual, wanted, allowed, ...)                                                                \
+    trial_compare(t, r, actual, wanted, wanted, allowed, __VA_ARGS__)
+
 __attribute__((format(printf, 2, 3))) void trial_remark(Trial *t, const char *text, ...);
 
 /* Both accuracies, one after the other. */
