@@ -1,9 +1,10 @@
 /* bench/main.c -- the program imtet-bench: engines compared by speed, accuracy and reliability.
  *
- *   imtet-bench sweep | throughput | promise | stability | laws | search | loop | problem [--option [VALUE]] ... */
+ *   imtet-bench sweep | throughput | promise | stability | laws | search | loop | schedule | problem [--option [VALUE]] ... */
 #include <cblas.h>
 #include <string.h>
 
+#include "bench/schedule.h"
 #include "bench/search/factors.h"
 #include "bench/search/loop.h"
 #include "bench/stability/laws.h"
@@ -223,6 +224,15 @@ static Status run_loop(const Args *args, Err *err)
     return output_end(&o, loop_run(&plan, o.stream, err), err);
 }
 
+static Status run_schedule(const Args *args, Err *err)
+{
+    SchedulePlan plan = {.folder = args->operand};
+    TRY(args_number(args, "--serial", 0.0, 1.0, 0.2, &plan.serial, err));
+    TRY(args_number(args, "--ends", 0.0, 1e9, 0.0, &plan.ends, err));
+    TRY(args_number(args, "--chain", 0.0, 1e9, 0.0, &plan.chain, err));
+    return schedule(&plan, stdout, err);
+}
+
 /* ---- the command line -------------------------------------------------------------------------------------------- */
 #define COMMAND(word, takes, function, sentence, first_example, text, ...)                                             \
     {                                                                                                                  \
@@ -293,6 +303,12 @@ static const Command COMMANDS[] = {
             {"--error", "SHARE", NULL, 0, "of the range, that is acceptable; 0.15 unless given; 0: none is"},
             {"--seeds", "N", NULL, 0, "3 unless given; the first is search.seed"}, OPTION_CSV, OPTIONS_MOTION,
             OPTION_SET),
+    COMMAND("schedule", "RUN", run_schedule, "a run of one thread replayed on 1 to 64 workers",
+            "imtet-bench schedule results/kobe",
+            "Efficiency, critical path and waiting, from the times of its designs and of its search. As CSV.",
+            {"--serial", "SHARE", NULL, 0, "of choosing designs, that one processor does alone; 0.2 unless given"},
+            {"--ends", "S", NULL, 0, "work behind the search: polishing, naming, baselines"},
+            {"--chain", "S", NULL, 0, "the longest chain in it"}),
     COMMAND("problem", "NAME", problem_run, "the search on a problem from a textbook: dtlz2, wfg4",
             "imtet-bench problem dtlz2 --max-evals 500 --seed 1 --csv dtlz2.csv",
             "Of 22 variables and 7 objectives (problem.variables, problem.objectives); every evaluated design, one "

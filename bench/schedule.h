@@ -1,0 +1,21 @@
+/* bench/schedule.h -- `imtet-bench schedule`: a finished run replayed on more workers than a machine has.
+ *
+ * Of the run, made with --threads 1, it takes how long each design was simulated, which answers had entered when each
+ * group of questions was made (RunGeneration.simulated), and what the search took from group to group: the rest of the
+ * time. A worker that is free takes the next question; a group is made when the answers are there, a part of that work by
+ * one processor, the rest by all, which the workers lose. Then come the ends of the study, no shorter than their chain.
+ * critical: time on any number of workers; choosing, idle: shares of the time. */
+#pragma once
+
+#include <stdio.h>
+
+#include "base/status.h"
+
+typedef struct {
+    const char *folder; /* of the run */
+    double serial;      /* share of choosing that one processor does alone */
+    double ends, chain; /* [s] behind the search */
+} SchedulePlan;
+
+/* A row for 1, 2, 4, ... 64 workers and 14, as CSV. */
+Status schedule(const SchedulePlan *plan, FILE *out, Err *err);
