@@ -89,6 +89,7 @@ int main(int argc, char *argv[])
             fprintf(stderr, "  %s\n", s->file);
         return 2;
     }
+    linalg_pin(); /* as the program does, whose bytes a study in this process must have */
     choose(suite, argc > 2 ? argv[2] : "");
     if (chosen.n == 0) {
         fprintf(stderr, "%s: no test of %s has `%s` in its name\n", argv[0], suite->file, argc > 2 ? argv[2] : "");

@@ -242,7 +242,7 @@ static inline int clear_place(void **state)
 
 /* Every simulation in a process of its own. */
 static const char ISOLATED[] =
-    SIX_FLOORS_INI "[sim]\nduration_s = 20\n"
+    SIX_FLOORS_INI "[sim]\nduration_s = 40\n"
                    "[search]\nmax_evals = 80\npolish = 0\nthreads = 2\nfailures_max = 0\n[run]\nisolate = yes\n";
 
 /* A process that simulates for `parent`, whose helper has started it, gets a signal; 0: none does just now. */

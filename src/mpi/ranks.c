@@ -71,8 +71,9 @@ static void *receive(void *user)
             free(m.bytes);
             m = (Message){.from = m.from, .tag = is_answer ? TAG_DONE : TAG_ALIVE};
         }
+        const size_t whose = is_right ? a->worker : 0; /* who is given the bytes frees them */
         for (size_t i = 0; there && i < p->n_workers; i++)
-            if (is_right ? i == a->worker : seat_of(r, i).rank == m.from)
+            if (is_right ? i == whose : seat_of(r, i).rank == m.from)
                 if (write(p->worker[i].in, &m, sizeof m) < 0)
                     continue; /* it is full of signs of life */
         pthread_mutex_unlock(&r->lock);
