@@ -51,6 +51,7 @@ static int is_result(const char *key)
 
 static void walk(Objects *all, const char *path, json_t *value)
 {
+    char below[200];
     const char *key;
     size_t i;
     json_t *part;
@@ -58,9 +59,11 @@ static void walk(Objects *all, const char *path, json_t *value)
     json_object_foreach(value, key, part)
     {
         add_key(o, key);
-        walk(all, brief("%.150s.%.40s", path, is_result(key) ? "RESULT" : key), part);
+        snprintf(below, sizeof below, "%.150s.%.40s", path, is_result(key) ? "RESULT" : key);
+        walk(all, below, part);
     }
-    json_array_foreach(value, i, part) walk(all, brief("%.190s[]", path), part);
+    snprintf(below, sizeof below, "%.190s[]", path);
+    json_array_foreach(value, i, part) walk(all, below, part);
 }
 
 /* One line for object i and those behind it that have the same keys, which are then done. */
