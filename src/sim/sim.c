@@ -526,8 +526,7 @@ static Status complete(SimWorker *w, SimResult *r, Err *err)
         r->neighbour.drift_ratio_max = fmax(r->neighbour.drift_ratio_max, r->neighbour.peak_drift_ratio[s]);
     }
     r->indentation_ratio = r->indentation_max_m / o->radius_m;
-    r->contact_pressure_pa =
-        o->youngs_modulus_pa / (M_PI * PLANE_STRAIN) * sqrt(fmax(r->indentation_ratio, 0));
+    r->contact_pressure_pa = o->youngs_modulus_pa / (M_PI * PLANE_STRAIN) * sqrt(fmax(r->indentation_ratio, 0));
     r->contact_yields = r->contact_pressure_pa > YIELD_PRESSURE_PA;
     r->bumper_strain = r->bumper_compression_m / o->bumper_thickness_m;
     r->bumper_bottoms_out = r->bumper_strain > o->bumper_strain_max;

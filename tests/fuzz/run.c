@@ -91,21 +91,23 @@ static void put(sqlite3 *db, const char *sql, const char *text, int length)
 
 void fuzz_cells(const uint8_t *data, size_t size)
 {
-    static const char *const UPDATES[] = {"UPDATE run SET settings = ?",
-                                          "UPDATE run SET provenance = ?",
-                                          "UPDATE run SET n_var = ?",
-                                          "UPDATE evaluation SET x1 = ? WHERE id = 3",
-                                          "UPDATE evaluation SET f1 = ? WHERE id = 4",
-                                          "UPDATE evaluation SET digest = ? WHERE id = 5",
-                                          "UPDATE state SET bytes = ? WHERE copy = 1",
-                                          "UPDATE evaluation SET outcome = ? WHERE id = 7",
-                                          "UPDATE evaluation SET reason = ? WHERE id = 8",
-                                          "UPDATE evaluation SET kind = ? WHERE id = 9",
-                                          "UPDATE evaluation SET violation = ? WHERE id = 10",
-                                          "UPDATE front SET entered = ?",
-                                          "UPDATE evaluation SET id = ? WHERE id = 11",
-                                          "UPDATE generation SET hypervolume = ?",
-                                          "UPDATE session SET stopped = ?"};
+    static const char *const UPDATES[] = {
+        "UPDATE run SET settings = ?",
+        "UPDATE run SET provenance = ?",
+        "UPDATE run SET n_var = ?",
+        "UPDATE evaluation SET x1 = ? WHERE id = 3",
+        "UPDATE evaluation SET f1 = ? WHERE id = 4",
+        "UPDATE evaluation SET digest = ? WHERE id = 5",
+        "UPDATE state SET bytes = ? WHERE copy = 1",
+        "UPDATE evaluation SET outcome = ? WHERE id = 7",
+        "UPDATE evaluation SET reason = ? WHERE id = 8",
+        "UPDATE evaluation SET kind = ? WHERE id = 9",
+        "UPDATE evaluation SET violation = ? WHERE id = 10",
+        "UPDATE front SET entered = ?",
+        "UPDATE evaluation SET id = ? WHERE id = 11",
+        "UPDATE generation SET hypervolume = ?",
+        "UPDATE session SET stopped = ?",
+    };
     char path[64], *template;
     size_t length;
     sqlite3 *db;

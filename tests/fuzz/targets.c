@@ -56,12 +56,14 @@ static void read_back(const Settings *s)
     char path[64];
     Err err = {0};
     Settings again;
-    FREED char *text = written(s);
+    char *text = written(s);
     const int fd = file_of((const uint8_t *)text, strlen(text), path);
     settings_defaults(&again);
     demand(settings_read(&again, path, NULL, NULL, &err) == STATUS_OK, "saved settings are accepted");
-    FREED char *second = written(&again);
+    char *second = written(&again);
     demand(strcmp(text, second) == 0, "saved settings stay what they are");
+    free(text);
+    free(second);
     close(fd);
 }
 
@@ -109,13 +111,14 @@ static void process(Motion *m)
 static void read_motion(const uint8_t *data, size_t size, const MotionHow *how, int processed)
 {
     Err err = {0};
-    OWNED(motion_free) Motion m;
+    Motion m;
     const Status status = motion_parse(&m, "input", (const char *)data, size, how, &err);
     demand_reason(status, &err);
     if (status == STATUS_OK)
         demand_motion(&m);
     if (status == STATUS_OK && processed && m.n < 4096 && m.dt_s > 1e-3)
         process(&m);
+    motion_free(&m);
 }
 
 void fuzz_motion(const uint8_t *data, size_t size)
@@ -149,14 +152,15 @@ static void demand_table(const Table *t)
 void fuzz_table(const uint8_t *data, size_t size)
 {
     char path[64];
-    OWNED(design_free) Designs d;
+    Designs d;
     for (int has_header = 0; has_header < 2; has_header++) {
         Err err = {0};
-        OWNED(table_free) Table t;
+        Table t;
         const Status status = table_parse(&t, "input", (const char *)data, size, has_header, &err);
         demand_reason(status, &err);
         if (status == STATUS_OK)
             demand_table(&t);
+        table_free(&t);
     }
     const int fd = file_of(data, size, path);
     Err err = {0};
@@ -166,5 +170,6 @@ void fuzz_table(const uint8_t *data, size_t size)
     demand_reason(status, &err);
     for (size_t i = 0; status == STATUS_OK && i < d.n * 4; i++)
         demand(d.x[i] >= 0, "gaps and walls are not negative");
+    design_free(&d);
     close(fd);
 }

@@ -16,7 +16,7 @@ static void demand_numbers(const ExternalAnswer *a)
 static void hear(External *e, const uint8_t *data, size_t size)
 {
     const size_t one = sizeof(ExternalAnswer) + N_OBJ * sizeof(double);
-    FREED char *answers = calloc(N_DESIGNS, one);
+    char *answers = calloc(N_DESIGNS, one);
     Pool pool = {.protocol = {.request_bytes = 1, .tell = tell}};
     Worker w = {.pool = &pool, .line = malloc(LINE_MAX_BYTES), .batch = 1};
     Task task[N_DESIGNS];
@@ -40,6 +40,7 @@ static void hear(External *e, const uint8_t *data, size_t size)
     }
     free(w.request);
     free(w.line);
+    free(answers);
 }
 
 void fuzz_worker(const uint8_t *data, size_t size)
@@ -48,9 +49,10 @@ void fuzz_worker(const uint8_t *data, size_t size)
     Err err = {0};
     const uint8_t *end = memchr(data, '\n', size);
     const size_t length = end ? (size_t)(end - data) : size;
-    FREED char *command = strndup((const char *)data, length);
+    char *command = strndup((const char *)data, length);
     if (command)
         split_command(&e, command, &err);
     hear(&e, data + length, size - length);
     free(e.text);
+    free(command);
 }
