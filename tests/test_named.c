@@ -7,12 +7,9 @@
 
 static const double PROMISED[] = {1e-3, 3e-3, 1e-2}; /* of J1, J2, J3: docs/promise.md */
 
-static int make_run(void **state)
+static void make_run(void)
 {
-    if (make_place(state) != 0)
-        return -1;
     free(output_of(STUDY "60"));
-    return 0;
 }
 
 static size_t named_of(const Run *run, size_t rows[])
@@ -178,8 +175,7 @@ TEST(a_run_that_goes_on_names_anew)
     assert_at_most(run.finer.n, 3 * (n + 4));
     FREED char *before = read_in_place("run/front.csv");
     free(output_of("optimize @/run"));
-    FREED char *after = read_in_place("run/front.csv");
-    assert_string_equal(before, after);
+    assert_text(read_in_place("run/front.csv"), before);
 }
 
 TEST(what_polishing_brings_to_the_front_is_known_where_it_is_named)
@@ -207,4 +203,4 @@ TEST(what_an_interrupted_study_names_is_known_too)
     assert_non_null(run.table.row[run_best(&run, 0)].err);
 }
 
-SUITE(make_run, clear_place)
+SUITE_FILLED(make_place, make_run, clear_place)
