@@ -205,13 +205,13 @@ TEST(a_scatter_as_built_above_the_tolerance_takes_its_place)
 
 TEST(the_command_prints_the_ladder_and_refuses_it_where_there_is_no_tower)
 {
-    json_t *o = json_of("check configs/quick.ini --json --ladder --set building.model=@/soft --set sim.duration_s=12"),
-           *ladder = json_object_get(o, "ladder");
+    json_auto_t *o =
+        json_of("check configs/quick.ini --json --ladder --set building.model=@/soft --set sim.duration_s=12");
+    const json_t *ladder = json_object_get(o, "ladder");
     assert_true(json_array_size(json_object_get(ladder, "effects")) >= 6);
     const char *theory = json_string_value(json_object_get(json_object_get(ladder, "settings"), "core.theory"));
     assert_true(strcmp(theory, "timoshenko") == 0 || strcmp(theory, "euler_bernoulli") == 0);
     assert_less(0, number(json_object_get(json_object_get(ladder, "by_the_set"), "rigid"), "j1_m"));
-    json_decref(o);
     expect_output(": no fault", "check configs/engineer.ini");
     expect(65, "--ladder: problem.kind is not tower",
            "check configs/quick.ini --ladder --set problem.kind=external --set problem.command=true");

@@ -120,11 +120,10 @@ TEST(simulate_says_no_less_of_what_cannot_be_predicted_than_the_run_knows)
         if (!run_is_unpredictable(&run, row))
             continue;
         n_unpredictable++;
-        json_t *o = json_of("simulate @/run/settings.ini --json --design @/run:%ld", run.finer.row[i].id),
-               *sd = json_object_get(json_object_get(o, "error"), "sd_gaps_1_um");
+        json_auto_t *o = json_of("simulate @/run/settings.ini --json --design @/run:%ld", run.finer.row[i].id);
+        const json_t *sd = json_object_get(json_object_get(o, "error"), "sd_gaps_1_um");
         for (size_t k = 0; k < run.schema.n_obj; k++)
             assert_at_most(run.table.row[row].err[k], number(sd, schema_objective(&run.schema, k)->name));
-        json_decref(o);
     }
     if (!n_unpredictable)
         print_message("skipped: every design that the run names can be predicted\n");

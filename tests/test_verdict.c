@@ -19,7 +19,6 @@ static json_t *simulated(size_t r, const char *word, const char *more)
 
 static void make_run(void)
 {
-    long id;
     free(output_of(
         "optimize configs/quick.ini " SIX_FLOORS "--out @/run --max-evals 10 --set search.initial=8 --set "
         "search.population=8 --set search.polish=0 --set sim.accuracy=coarse --record builtin:kobe-like --set "
@@ -27,7 +26,7 @@ static void make_run(void)
     FREED char *stored = read_in_place("run/verdicts.json");
     json_t *all = json_loads(stored, 0, NULL), *text = json_object_iter_value(json_object_iter(all));
     OWNED(run_free) Run run = run_in("run");
-    id = run.table.row[run_knee(&run)].id;
+    const long id = run.table.row[run_knee(&run)].id;
     assert_true(text && atol(json_object_iter_key(json_object_iter(all))) == id);
     snprintf(verdict, sizeof verdict, "%s", json_string_value(text));
     char rest[800] = "", *run_at = strstr(verdict, " RUN ");
