@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/status.h" /* before cmocka.h, which defines a macro fail() */
+#include "base/clock.h"
 #include "base/linalg.h"
 #include "base/random.h"
 #include "base/stat.h"
@@ -176,6 +177,19 @@ static inline void check_says(const char *text, const char *const words[], const
 }
 #define assert_words(text, ...) check_says(text, (const char *const[]){__VA_ARGS__, NULL}, __FILE__, __LINE__)
 
+/* The same of a text that is released then. */
+static inline void check_made(char *text, const char *const words[], const char *file, int line)
+{
+    check_says(text, words, file, line);
+    free(text);
+}
+#define assert_words_in(text, ...) check_made(text, (const char *const[]){__VA_ARGS__, NULL}, __FILE__, __LINE__)
+#define assert_text(text, wanted)                                                                                      \
+    do {                                                                                                               \
+        FREED char *made = text;                                                                                       \
+        assert_string_equal(made, wanted);                                                                             \
+    } while (0)
+
 /* A call that fills err ends with the status, and err has the words. */
 static inline void check_refused(Status status, Status wanted, const char *words, const char *file, int line)
 {
@@ -190,13 +204,6 @@ static inline void check_refused(Status status, Status wanted, const char *words
         err = (Err){0};                                                                                                \
         check_refused(call, status, words, __FILE__, __LINE__);                                                        \
     } while (0)
-
-static inline double now_s(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 static inline void rest(double seconds)
 {

@@ -50,7 +50,7 @@ static struct {
 static int begin(void **state)
 {
     chosen.now++;
-    chosen.clock = now_s();
+    chosen.clock = clock_seconds();
     chosen.processor = processor_s();
     return chosen.before_each ? chosen.before_each(state) : 0;
 }
@@ -58,7 +58,7 @@ static int begin(void **state)
 static int end(void **state)
 {
     (void)state;
-    print_message("[ SECONDS  ] %.2f %.2f %s\n", now_s() - chosen.clock, processor_s() - chosen.processor,
+    print_message("[ SECONDS  ] %.2f %.2f %s\n", clock_seconds() - chosen.clock, processor_s() - chosen.processor,
                   chosen.tests[chosen.now - 1].name);
     return 0;
 }

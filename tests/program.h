@@ -240,6 +240,17 @@ static inline int clear_place(void **state)
     return system(brief("rm -rf '%s'", place.folder));
 }
 
+/* As SUITE, of a file whose folder is made before and then filled. */
+#define SUITE_FILLED(make, fill, tear_down)                                                                            \
+    static int make_filled(void **state)                                                                               \
+    {                                                                                                                  \
+        if (make(state) != 0)                                                                                          \
+            return -1;                                                                                                 \
+        fill();                                                                                                        \
+        return 0;                                                                                                      \
+    }                                                                                                                  \
+    SUITE(make_filled, tear_down)
+
 /* Every simulation in a process of its own. */
 static const char ISOLATED[] =
     SIX_FLOORS_INI "[sim]\nduration_s = 40\n"

@@ -25,8 +25,7 @@ TEST(check_asks_the_worker_one_design_and_says_its_answer_and_the_time_of_the_st
     assert_string_equal(json_string_value(json_object_get(worker, "outcome")), "ok");
     const double each = number(study, "simulation_s"), search = number(study, "search_s");
     assert_true(each > 0.0 && fabs(number(study, "seconds") - (30 * each / 2 + search)) < 1e-12);
-    FREED char *asked = read_in_place("asked");
-    assert_string_equal(asked, "1\n1\n"); /* quick: once more, without the start of the process */
+    assert_text(read_in_place("asked"), "1\n1\n"); /* quick: once more, without the start of the process */
 }
 
 TEST(simulate_gives_what_the_run_has_of_every_design_of_its_front)

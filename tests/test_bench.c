@@ -5,6 +5,7 @@
 #include "bench/search/factors.h"
 #include "bench/search/loop.h"
 #include "bench/search/reference.h"
+#include "program.h"
 #include "scene_options.h"
 
 typedef struct {
@@ -132,22 +133,15 @@ TEST(quantiles_are_the_least_that_a_share_does_not_exceed)
     assert_true(bench_median(10, x) == 5.5 && bench_median(9, x) == 5 && isnan(bench_median(0, x)));
 }
 
-/* A tower of six soft floors in a folder of its own, whose swings close gaps of every kind. */
-static void write_soft_floors(BuildingOptions *o, char folder[])
-{
-    assert_non_null(mkdtemp(folder));
-    snprintf(o->model, sizeof o->model, "%s", folder);
-    write_to(brief("%s/storeys.csv", folder), "height_m,mass_t,stiffness_kn_m\n4,300,2e4\n4,300,2e4\n4,300,2e4\n"
-                                              "4,300,2e4\n4,300,2e4\n4,300,2e4\n");
-}
-
+/* Of six soft floors, whose swings close gaps of every kind. */
 TEST(the_table_of_the_promise_has_a_row_for_every_accuracy)
 {
-    char folder[] = "/tmp/bench-XXXXXX";
     FREED char *page = NULL;
     size_t size;
     OWNED(ground_close) Ground g = ground();
-    write_soft_floors(&g.s.building, folder);
+    write_in_place("soft/storeys.csv", "height_m,mass_t,stiffness_kn_m\n4,300,2e4\n4,300,2e4\n4,300,2e4\n"
+                                       "4,300,2e4\n4,300,2e4\n4,300,2e4\n");
+    snprintf(g.s.building.model, sizeof g.s.building.model, "%s", there("soft"));
     g.m.n = (size_t)(20 / g.m.dt_s);
     FILE *f = open_memstream(&page, &size), *quiet = fopen("/dev/null", "w");
     assert_true(f && quiet);
@@ -155,8 +149,6 @@ TEST(the_table_of_the_promise_has_a_row_for_every_accuracy)
     CHECK_OK(promise_write(&plan, f, quiet, &err), &err);
     fclose(f);
     fclose(quiet);
-    unlink(brief("%s/storeys.csv", folder));
-    rmdir(folder);
     print_message("%s", page);
     assert_words(page, "\nlog-uniform,\"coarse\",j1,1,1,", "\nwide,\"standard\",j3,1,1,",
                  "\nthree floors,\"true / estimated error\",edcs_pct,1,1,", "\ncvode,\"fine\",share_points,1,1,");
@@ -288,4 +280,4 @@ TEST(the_loop_simulates_what_fails_the_error_test_and_the_search_as_many_from_th
     assert_true(never[2] > 100 && never[2] <= 120 && never[3] == never[2]);
 }
 
-SUITE(NULL, NULL)
+SUITE(make_place, clear_place)

@@ -416,6 +416,22 @@ TEST(a_list_of_damping_gives_each_mode_its_ratio)
     expect_refusal_of(&o, "has 21 ratios; the building has 20 modes");
 }
 
+/* What `simulate` says by the fast engine and by CVODE, alike; their contacts are in @/contacts-0.csv and -1.csv. */
+static json_t *by_two_engines(const char *options)
+{
+    json_t *both = json_array();
+    for (int i = 0; i < 2; i++)
+        json_array_append_new(both, json_of("simulate configs/quick.ini --set motion.stretch=1 --set sim.accuracy=fine "
+                                            "--json --contacts @/contacts-%d.csv --set sim.engine=%s %s",
+                                            i, i ? "cvode" : "fast", options));
+    const json_t *fast = json_array_get(both, 0), *cvode = json_array_get(both, 1);
+    assert_at_most(10, number(fast, "impacts"));
+    assert_int_equal((int)number(fast, "impacts"), (int)number(cvode, "impacts"));
+    assert_close(number(fast, "j1_m"), number(cvode, "j1_m"), 1e-4);
+    assert_close(number(fast, "j3_g"), number(cvode, "j3_g"), 1e-3);
+    return both;
+}
+
 /* As many floors as there may be, of which every 18th and the roof strike at once: sets of floors, pads and designs have
  * room for all of them. */
 TEST(a_building_of_the_most_floors_is_simulated_alike_by_two_engines)
@@ -431,24 +447,15 @@ TEST(a_building_of_the_most_floors_is_simulated_alike_by_two_engines)
     write_file(&o, "storeys.csv", "%s", rows);
     write_file(&o, "design.csv", "%st_base_m,t_top_m\n%s0.02,0.01\n", head, gaps);
     write_file(&o, "push.csv", "time_s,accel_m_s2\n0,0\n0.2,3\n");
-    json_t *r[2];
+    json_decref(by_two_engines("--set building.model=@/tall --design @/tall/design.csv --record @/tall/push.csv "
+                               "--set sim.duration_s=0.15"));
     for (int i = 0; i < 2; i++) {
-        r[i] = json_of("simulate configs/quick.ini --set building.model=@/tall --design @/tall/design.csv --record "
-                       "@/tall/push.csv --set motion.stretch=1 --set sim.duration_s=0.15 --set sim.accuracy=fine --set "
-                       "sim.engine=%s --json --contacts @/contacts.csv",
-                       i ? "cvode" : "fast");
-        OWNED(table_free) Table contacts = table_of("contacts.csv");
+        OWNED(table_free) Table contacts = table_of(brief("contacts-%d.csv", i));
         double highest = 0;
         for (size_t k = 0; k < contacts.n_rows; k++)
             highest = fmax(highest, contacts.values[k * contacts.n_cols + (size_t)table_column(&contacts, "floor")]);
         assert_same_number(highest, FLOORS_MAX);
     }
-    assert_at_most(10, number(r[0], "impacts"));
-    assert_int_equal((int)number(r[0], "impacts"), (int)number(r[1], "impacts"));
-    assert_close(number(r[0], "j1_m"), number(r[1], "j1_m"), 1e-4);
-    assert_close(number(r[0], "j3_g"), number(r[1], "j3_g"), 1e-3);
-    json_decref(r[0]);
-    json_decref(r[1]);
 }
 
 /* ---- more than the floors ------------------------------------------------------------------------------------- */
@@ -678,9 +685,8 @@ TEST(a_floor_that_one_node_stands_for_is_warned_of_where_periods_move)
     static const char *const COMMANDS[] = {"building @/soft", "check configs/quick.ini --set building.model=@/soft"};
     for (size_t i = 0; i < 2; i++) {
         OWNED(forget) Said s, all;
-        FREED char *command = formatted("%s --set building.rigid_floors=off", COMMANDS[i]);
-        FREED char *wanted =
-            formatted("period 1 is %.4g s with one node for each floor, %.4g s in the full", is, should);
+        const char *command = brief("%s --set building.rigid_floors=off", COMMANDS[i]);
+        const char *wanted = brief("period 1 is %.4g s with one node for each floor, %.4g s in the full", is, should);
         run(&s, "%s", command);
         assert_true(strstr(s.err, wanted) || strstr(s.out, wanted));
         run(&all, "%s --set building.modes=100", command);
@@ -710,7 +716,6 @@ TEST(the_full_model_is_simulated_alike_by_two_engines)
 {
     char design[1024] = "";
     const BuildingOptions o = folder_of("design");
-    json_t *r[2];
     for (int j = 0; j < 20; j++)
         append(design, "gap_%02d_m,", j + 1);
     strcat(design, "t_base_m,t_top_m\n");
@@ -718,18 +723,11 @@ TEST(the_full_model_is_simulated_alike_by_two_engines)
         append(design, "%g,", 0.001 + 0.0005 * ((j * 7) % 20));
     write_file(&o, "design.csv", "%s0.02,0.008\n", design);
     write_shaking("shaking.csv");
-    for (int i = 0; i < 2; i++)
-        r[i] = json_of("simulate configs/quick.ini --set building.modes=100000 --design @/design/design.csv --record "
-                       "@/shaking.csv --set motion.stretch=1 --set sim.duration_s=0.8 --set sim.accuracy=fine --set "
-                       "sim.engine=%s --json",
-                       i ? "cvode" : "fast");
-    assert_at_most(10, number(r[0], "impacts"));
-    assert_int_equal((int)number(r[0], "impacts"), (int)number(r[1], "impacts"));
+    json_auto_t *both =
+        by_two_engines("--set building.modes=100000 --design @/design/design.csv --record @/shaking.csv "
+                       "--set sim.duration_s=0.8");
     FOR_EACH (const char *, same, "j1_m", "j2_m", "ed1_pct", "edcs_pct", "base_shear_n", "contact_force_max_n")
-        assert_close(number(r[0], *same), number(r[1], *same), 1e-4);
-    assert_close(number(r[0], "j3_g"), number(r[1], "j3_g"), 1e-3);
-    json_decref(r[0]);
-    json_decref(r[1]);
+        assert_close(number(json_array_get(both, 0), *same), number(json_array_get(both, 1), *same), 1e-4);
 }
 
 /* ---- imtet building ------------------------------------------------------------------------------------------- */

@@ -182,15 +182,12 @@ TEST(a_damaged_run_says_what_its_tables_still_know_and_another_begins_with_it)
     assert_same_run("sound", "hurt");
 }
 
-static int make_sound(void **state)
+static void make_sound(void)
 {
-    if (prepare(state) != 0)
-        return -1;
     write_in_place("textbook.ini", TEXTBOOK);
     write_in_place("slow.ini", SLOW);
     free(output_of("optimize @/textbook.ini --out @/sound"));
     free(output_of("optimize @/slow.ini --out @/slow"));
-    return 0;
 }
 
-SUITE(make_sound, clear_place)
+SUITE_FILLED(prepare, make_sound, clear_place)

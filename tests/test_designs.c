@@ -12,10 +12,8 @@ typedef struct {
 static Known known;
 
 /* A small study, once for all tests. */
-static int make_run(void **state)
+static void make_run(void)
 {
-    if (make_place(state) != 0)
-        return -1;
     FREED char *said =
         output_of("optimize configs/quick.ini --out @/run --threads 2 --max-evals 24 --set search.initial=12 "
                   "--set search.population=12 --set search.polish=0 --set 'search.limits=j1_m<=0.042' " SHORT);
@@ -27,7 +25,7 @@ static int make_run(void **state)
             known.off = h.table.row[i].id;
             known.off_j1 = h.table.f[i * h.schema.n_obj];
         }
-    return known.off > 0 ? 0 : -1;
+    assert_less(0, known.off);
 }
 
 static double j1_of(const char *word)
@@ -114,8 +112,8 @@ TEST(evaluate_compares_with_devices_and_replicates_have_a_named_deviation)
     const json_t *replicates = json_object_get(record, "replicates");
     assert_string_equal(json_string_value(json_object_get(replicates, "spread")), "as built");
     assert_same_number(number(replicates, "n"), 3);
-    FREED char *said = output_of("evaluate @/run --design knee --replicates 3");
-    assert_words(said, "mean of 3, sd predictability", "the other lines are as designed", "\nviscous links (");
+    assert_words_in(output_of("evaluate @/run --design knee --replicates 3"), "mean of 3, sd predictability",
+                    "the other lines are as designed", "\nviscous links (");
     expect(65, "needs replicates that differ", "evaluate @/run --design knee --set sim.uncertain=damping=0.1");
 }
 
@@ -224,4 +222,4 @@ TEST(words_that_name_nothing_are_refused_with_what_is_there)
     expect(65, "has no design of id 999", SIMULATE "@/run/front.csv:999");
 }
 
-SUITE(make_run, clear_place)
+SUITE_FILLED(make_place, make_run, clear_place)

@@ -271,8 +271,7 @@ TEST(who_closes_the_standard_streams_finds_nothing_of_them_in_the_run)
     run(&s, "optimize @/textbook.ini --max-evals 30 --out @/shut <&- >&- 2>&-");
     assert_int_equal(s.code, 74); /* its table could not be printed */
     assert_same_run("open", "shut");
-    FREED char *log = read_in_place("shut/log.jsonl");
-    assert_words(log, "!imtet:", "!knee");
+    assert_words_in(read_in_place("shut/log.jsonl"), "!imtet:", "!knee");
 }
 
 SUITE(prepare, clear_place)

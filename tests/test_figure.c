@@ -1,5 +1,5 @@
 /* A number for people has the digits that its error leaves, and never more. */
-#include "check.h"
+#include "program.h"
 
 #include "base/figure.h"
 #include "cmd/document.h"
@@ -85,12 +85,10 @@ TEST(the_page_writes_the_same_figures)
     static const double VALUES[] = {0,    16.48,   -16.48, 0.0766421, 436251.3, 1.5312e8, 1.5312e-9,
                                     9.96, -0.0066, 1e-4,   3.21e-5,   1e-6,     9.9999e-7};
     static const double SHARES[] = {NAN, 0, 1e-9, 1e-3, 0.013, 0.11, 0.6, 1.3, 30};
-    char path[] = "/tmp/imtet-figure-XXXXXX", command[200], text[FIGURE_MAX], line[FIGURE_MAX + 2];
+    char text[FIGURE_MAX], line[FIGURE_MAX + 2];
     if (system("command -v node >/dev/null") != 0)
         skip();
-    const int fd = mkstemp(path);
-    FILE *f = fdopen(fd, "w");
-    assert_non_null(f);
+    FILE *f = opened(there("all.js"), "w");
     fputs("const finite = Number.isFinite, ALL = [", f);
     for (size_t i = 0; i < sizeof VALUES / sizeof VALUES[0]; i++)
         for (size_t k = 0; k < sizeof SHARES / sizeof SHARES[0]; k++)
@@ -100,8 +98,7 @@ TEST(the_page_writes_the_same_figures)
                 fprintf(f, "[%.17g, %.17g], ", VALUES[i], SHARES[k] * fmax(fabs(VALUES[i]), 0.01));
     fputs("]; for (const [v, e] of ALL) console.log(figureText(v, e));\n", f);
     fclose(f);
-    snprintf(command, sizeof command, "cat web/app/2-figure.js %s | node -", path);
-    FILE *said = popen(command, "r");
+    FILE *said = popen(brief("cat web/app/2-figure.js %s | node -", there("all.js")), "r");
     assert_non_null(said);
     for (size_t i = 0; i < sizeof VALUES / sizeof VALUES[0]; i++)
         for (size_t k = 0; k < sizeof SHARES / sizeof SHARES[0]; k++) {
@@ -111,7 +108,6 @@ TEST(the_page_writes_the_same_figures)
             assert_string_equal(line, text);
         }
     pclose(said);
-    unlink(path);
 }
 
-SUITE(NULL, NULL)
+SUITE(make_place, clear_place)

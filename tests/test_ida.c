@@ -59,13 +59,10 @@ TEST(a_failed_simulation_counts_as_infinite)
 #define RANGE                                                                                                          \
     "evaluate @/run --design knee --record builtin:elcentro-like --record builtin:sylmar-like --pga 0.1:0.1:0.3 "
 
-static int make_run(void **state)
+static void make_run(void)
 {
-    if (make_place(state) != 0)
-        return -1;
     free(output_of("optimize configs/quick.ini " SIX_FLOORS "--out @/run --max-evals 8 --set search.initial=8 --set "
                    "search.population=8 --set search.polish=0 --record builtin:elcentro-like --set sim.duration_s=4"));
-    return 0;
 }
 
 static const json_t *record_at(const json_t *o, size_t i)
@@ -117,8 +114,7 @@ TEST(the_csv_has_every_run_and_the_fractiles_at_any_number_of_threads)
 
 TEST(the_table_and_the_picture_show_the_three_scenes)
 {
-    FREED char *table = output_of(RANGE);
-    assert_words(table, "with core, 2 records: median", "rigidly connected, 2 records", "no core, 2");
+    assert_words_in(output_of(RANGE), "with core, 2 records: median", "rigidly connected, 2 records", "no core, 2");
     if (has_browser()) {
         free(output_of(RANGE "--svg @/ida.svg"));
         FREED char *svg = read_in_place("ida.svg");
@@ -139,11 +135,10 @@ TEST(names_of_records_are_whole_and_rows_go_to_csv)
     static const char NAME[] = "a_record_with_a_name_that_is_much_longer_than_forty_characters.csv";
     write_in_place(brief("many/%s", NAME), "t,a_m_s2\n0,0\n0.02,1\n0.04,-2\n0.06,1\n0.08,0.5\n");
     write_in_place("many/b.csv", "t,a_m_s2\n0,0\n0.02,1\n0.04,oops\n");
-    FREED char *table = output_of("evaluate @/run --design knee --record @/many");
-    assert_words(table, "a_record_with_a_name_that_is_much_longer_than_forty_characters.csv  no core", "not read: ");
+    assert_words_in(output_of("evaluate @/run --design knee --record @/many"),
+                    "a_record_with_a_name_that_is_much_longer_than_forty_characters.csv  no core", "not read: ");
     free(output_of("evaluate @/run --design knee --record @/many --csv @/rows.csv"));
-    FREED char *rows = read_in_place("rows.csv");
-    assert_words(rows, NAME, ",no_core,ok,");
+    assert_words_in(read_in_place("rows.csv"), NAME, ",no_core,ok,");
 }
 
 /* Of the only record, in the row of the design; the other scenes have none. */
@@ -174,4 +169,4 @@ TEST(the_csv_has_mean_and_deviation_of_the_replicates_as_the_json_has)
     expect(2, "every intensity is simulated once", RANGE "--set sim.replicates=3");
 }
 
-SUITE(make_run, clear_place)
+SUITE_FILLED(make_place, make_run, clear_place)

@@ -8,13 +8,10 @@
 enum { N = 5 };
 
 /* Five storeys so soft that their weights matter. */
-static int make_building(void **state)
+static void make_building(void)
 {
-    if (make_place(state) != 0)
-        return -1;
     write_in_place("soft/storeys.csv", "height_m,mass_t,stiffness_kn_m\n4,300,60000\n4,300,50000\n4,300,40000\n"
                                        "4,300,30000\n4,300,20000\n");
-    return 0;
 }
 
 static Settings scene_of(const char *const sets[])
@@ -208,13 +205,13 @@ TEST(a_scatter_as_built_above_the_tolerance_takes_its_place)
 
 TEST(the_command_prints_the_ladder_and_refuses_it_where_there_is_no_tower)
 {
-    json_t *o = json_of("check configs/quick.ini --json --ladder --set building.model=@/soft --set sim.duration_s=12"),
-           *ladder = json_object_get(o, "ladder");
+    json_auto_t *o =
+        json_of("check configs/quick.ini --json --ladder --set building.model=@/soft --set sim.duration_s=12");
+    const json_t *ladder = json_object_get(o, "ladder");
     assert_true(json_array_size(json_object_get(ladder, "effects")) >= 6);
     const char *theory = json_string_value(json_object_get(json_object_get(ladder, "settings"), "core.theory"));
     assert_true(strcmp(theory, "timoshenko") == 0 || strcmp(theory, "euler_bernoulli") == 0);
     assert_less(0, number(json_object_get(json_object_get(ladder, "by_the_set"), "rigid"), "j1_m"));
-    json_decref(o);
     expect_output(": no fault", "check configs/engineer.ini");
     expect(65, "--ladder: problem.kind is not tower",
            "check configs/quick.ini --ladder --set problem.kind=external --set problem.command=true");
@@ -241,4 +238,4 @@ TEST(an_effect_is_needed_where_only_the_building_alone_needs_it_and_the_set_has_
     }
 }
 
-SUITE(make_building, clear_place)
+SUITE_FILLED(make_place, make_building, clear_place)

@@ -283,9 +283,8 @@ TEST(the_shared_library_shows_the_functions_of_its_headers_and_nothing_else)
         shell("sed -n 's/^IMTET_API .*[ *]\\(imtet_[a-z_]*\\)(.*/\\1/p' include/imtet.h include/imtet_scene.h | sort");
     assert_string_equal(shown, wanted);
     assert_at_most(count(wanted, "\n"), 25);
-    FREED char *others =
-        shell("nm --defined-only build/release/libimtet.a | awk '$2 ~ /[ABDRTVW]/ && $3 !~ /^imtet_/ { print }'");
-    assert_string_equal(others, "");
+    assert_text(
+        shell("nm --defined-only build/release/libimtet.a | awk '$2 ~ /[ABDRTVW]/ && $3 !~ /^imtet_/ { print }'"), "");
 }
 
 TEST(the_headers_stand_alone_in_c_and_in_cpp)
@@ -320,23 +319,21 @@ TEST(the_examples_run)
     static const char *const SAYS[][2] = {{"build/release/examples/ask_tell", "designs on the front"},
                                           {"build/release/examples/simulate", "2001 times of 20 floors"},
                                           {"build/release/examples/executor", "120 evaluations by 4 threads"}};
-    for (size_t i = 0; i < N_OF(SAYS); i++) {
-        FREED char *said = shell(SAYS[i][0]);
-        assert_words(said, SAYS[i][1]);
-    }
+    for (size_t i = 0; i < N_OF(SAYS); i++)
+        assert_words_in(shell(SAYS[i][0]), SAYS[i][1]);
 }
 
 TEST(what_is_installed_compiles_and_links_by_pkg_config_and_is_gone_again)
 {
     if (!is_built())
         skip();
-    FREED char *said =
+    assert_words_in(
         shell(brief("P=%s/root && make -s install-library DESTDIR=$P PREFIX=/opt && export PKG_CONFIG_SYSROOT_DIR=$P "
                     "PKG_CONFIG_LIBDIR=$P/opt/lib/pkgconfig && cc examples/ask_tell.c $(pkg-config --cflags --libs "
                     "imtet) -lm -o $P/a && LD_LIBRARY_PATH=$P/opt/lib $P/a && rm $P/a && make -s uninstall-library "
                     "DESTDIR=$P PREFIX=/opt && find $P -type f -o -type l",
-                    place.folder));
-    assert_words(said, "designs on the front", "!root/");
+                    place.folder)),
+        "designs on the front", "!root/");
 }
 
 TEST(python_does_what_its_tests_say)

@@ -55,9 +55,8 @@ TEST(help_of_a_command_is_the_same_both_ways)
 TEST(the_version_says_what_the_program_was_built_from)
 {
     json_auto_t *o = json_of("--version --json");
-    FREED char *line = output_of("--version");
-    assert_string_equal(line, brief("imtet %s (%s)\n", json_string_value(json_object_get(o, "version")),
-                                    json_string_value(json_object_get(o, "revision"))));
+    assert_text(output_of("--version"), brief("imtet %s (%s)\n", json_string_value(json_object_get(o, "version")),
+                                              json_string_value(json_object_get(o, "revision"))));
     assert_non_null(json_string_value(json_object_get(json_object_get(o, "libraries"), "sundials")));
     assert_true(isalpha((unsigned char)json_string_value(json_object_get(o, "compiler"))[0]));
     expect(2, "nothing but --json", "--version --jsn");
@@ -148,8 +147,7 @@ TEST(zsh_offers_what_bash_does)
 TEST(what_is_installed_is_gone_again)
 {
     install_for("make");
-    FREED char *left = shell("make -s uninstall PREFIX=@/opt; find @/opt -type f -o -type l");
-    assert_string_equal(left, "");
+    assert_text(shell("make -s uninstall PREFIX=@/opt; find @/opt -type f -o -type l"), "");
 }
 
 /* Every row of the table in the documentation is a status of the program and the other way round. */

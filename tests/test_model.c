@@ -5,17 +5,14 @@
 
 #include "analysis/model_choice.h"
 
-static int make_buildings(void **state)
+static void make_buildings(void)
 {
-    if (make_place(state) != 0)
-        return -1;
     write_in_place("six/storeys.csv", "height_m,mass_t,stiffness_kn_m\n3.6,390,354344\n3.6,390,318910\n3.6,390,283475\n"
                                       "3.6,390,248041\n3.6,390,212606\n3.6,390,177172\n");
     write_in_place("s.ini", "[building]\nmodel = six\n[core]\nwidth_m = 4\n[design]\ngap_m = 0.001, 0.13\n"
                             "[motion]\nrecord = builtin:elcentro-like\npga_g = 0.35\n[sim]\nmodel = auto\n"
                             "duration_s = 8\naccuracy = coarse\n[search]\nobjectives = j1_m, drift_ratio, j3_g\n"
                             "initial = 12\npopulation = 8\nmax_evals = 24\nthreads = 2\npolish = 0\n");
-    return 0;
 }
 
 static Settings scene_of(const char *const sets[])
@@ -289,4 +286,4 @@ TEST(files_that_are_not_there_and_presets_that_are_none_begin_nothing)
     assert_int_equal(s.sim.model, MODEL_AUTO);
 }
 
-SUITE(make_buildings, clear_place)
+SUITE_FILLED(make_place, make_buildings, clear_place)

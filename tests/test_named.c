@@ -7,12 +7,9 @@
 
 static const double PROMISED[] = {1e-3, 3e-3, 1e-2}; /* of J1, J2, J3: docs/promise.md */
 
-static int make_run(void **state)
+static void make_run(void)
 {
-    if (make_place(state) != 0)
-        return -1;
     free(output_of(STUDY "60"));
-    return 0;
 }
 
 static size_t named_of(const Run *run, size_t rows[])
@@ -123,11 +120,10 @@ TEST(simulate_says_no_less_of_what_cannot_be_predicted_than_the_run_knows)
         if (!run_is_unpredictable(&run, row))
             continue;
         n_unpredictable++;
-        json_t *o = json_of("simulate @/run/settings.ini --json --design @/run:%ld", run.finer.row[i].id),
-               *sd = json_object_get(json_object_get(o, "error"), "sd_gaps_1_um");
+        json_auto_t *o = json_of("simulate @/run/settings.ini --json --design @/run:%ld", run.finer.row[i].id);
+        const json_t *sd = json_object_get(json_object_get(o, "error"), "sd_gaps_1_um");
         for (size_t k = 0; k < run.schema.n_obj; k++)
             assert_at_most(run.table.row[row].err[k], number(sd, schema_objective(&run.schema, k)->name));
-        json_decref(o);
     }
     if (!n_unpredictable)
         print_message("skipped: every design that the run names can be predicted\n");
@@ -178,8 +174,7 @@ TEST(a_run_that_goes_on_names_anew)
     assert_at_most(run.finer.n, 3 * (n + 4));
     FREED char *before = read_in_place("run/front.csv");
     free(output_of("optimize @/run"));
-    FREED char *after = read_in_place("run/front.csv");
-    assert_string_equal(before, after);
+    assert_text(read_in_place("run/front.csv"), before);
 }
 
 TEST(what_polishing_brings_to_the_front_is_known_where_it_is_named)
@@ -207,4 +202,4 @@ TEST(what_an_interrupted_study_names_is_known_too)
     assert_non_null(run.table.row[run_best(&run, 0)].err);
 }
 
-SUITE(make_run, clear_place)
+SUITE_FILLED(make_place, make_run, clear_place)

@@ -79,19 +79,17 @@ TEST(every_file_and_command_follows_the_objectives_by_name)
     double least = HUGE_VAL;
     for (size_t i = 0; i < front.n_rows; i++)
         least = fmin(least, front.values[i * front.n_cols + 1 + N_VAR]);
-    json_t *o = json_of("choose @/other --json --min core_stress_pa=1 --weights core_stress_pa=1,impacts=1e-9");
+    json_auto_t *o = json_of("choose @/other --json --min core_stress_pa=1 --weights core_stress_pa=1,impacts=1e-9");
     const json_t *designs = json_object_get(o, "designs"),
                  *last = json_array_get(designs, json_array_size(designs) - 1);
     assert_string_equal(json_string_value(json_object_get(last, "name")), "weighted");
     assert_same_number(number(json_object_get(last, "objectives"), "core_stress_pa"), least);
-    json_decref(o);
-    o = json_of("export @/other --json");
-    const json_t *columns = json_object_get(o, "columns"), *column;
+    json_auto_t *exported = json_of("export @/other --json");
+    const json_t *columns = json_object_get(exported, "columns"), *column;
     size_t i, objectives = 0;
     json_array_foreach(columns, i, column) objectives +=
         strcmp(json_string_value(json_object_get(column, "role")), "objective") == 0;
     assert_int_equal(objectives, 3);
-    json_decref(o);
     free(output_of("report @/other"));
     free(output_of("polish @/other --design knee --improve core_stress_pa --max-evals 30 --csv @/polished.csv"));
     OWNED(table_free) Table polished = table_of("polished.csv");
@@ -188,14 +186,14 @@ TEST(the_status_of_a_study_names_gaps_that_never_close)
 {
     write_in_place("tower.ini", TOWER);
     free(output_of("optimize @/tower.ini --out @/calm --set motion.pga_g=0.0005"));
-    json_t *o = json_of("status @/calm --json"), *review = json_object_get(o, "front_review");
+    json_auto_t *o = json_of("status @/calm --json");
+    const json_t *review = json_object_get(o, "front_review");
     assert_int_equal(json_integer_value(json_object_get(review, "beyond_contact_law")), 0);
     assert_int_equal(json_array_size(json_object_get(review, "gaps_on_smallest")), FLOORS);
     const json_t *never = json_object_get(review, "never_closing");
     assert_int_equal(json_array_size(never), FLOORS);
     assert_int_equal(json_integer_value(json_array_get(never, FLOORS - 1)), FLOORS);
     assert_less(0, number(review, "designs_simulated"));
-    json_decref(o);
 }
 
 TEST(gaps_on_their_bounds_are_counted_floor_by_floor)

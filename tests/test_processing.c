@@ -282,15 +282,14 @@ TEST(settings_of_a_motion_that_make_no_sense_together_are_refused)
 
 TEST(the_figures_beside_processed_ones_are_those_of_the_record_at_the_same_scale)
 {
-    json_t *a = json_of("spectrum builtin:sylmar-like --json --set motion.baseline=linear --pga 0.3"),
-           *r = json_object_get(a, "recorded");
+    json_auto_t *a = json_of("spectrum builtin:sylmar-like --json --set motion.baseline=linear --pga 0.3");
+    const json_t *r = json_object_get(a, "recorded");
     json_auto_t *b = json_of("spectrum builtin:sylmar-like --json --set motion.factor=%.17g", number(a, "scale"));
     assert_true(json_is_true(json_object_get(a, "corrected")));
     assert_true(json_is_false(json_object_get(b, "corrected")));
     assert_close(number(r, "pgd_m"), number(b, "pgd_m"), 1e-12);
     assert_close(number(r, "pgv_m_s"), number(b, "pgv_m_s"), 1e-12);
     assert_true(json_equal(json_object_get(r, "psa_m_s2"), json_object_get(b, "psa_m_s2")));
-    json_decref(a);
 }
 
 /* A million samples: 8 MB each for five histories, 24 and 10 for the rows and the text of the file. */

@@ -338,13 +338,10 @@ TEST(who_lets_go_of_a_lock_within_a_second_is_waited_for)
     assert_int_equal(wait_end(pid), 0);
 }
 
-static int make_sound(void **state)
+static void make_sound(void)
 {
-    if (prepare(state) != 0)
-        return -1;
     write_in_place("textbook.ini", TEXTBOOK);
     free(output_of("optimize @/textbook.ini --out @/sound"));
-    return 0;
 }
 
-SUITE(make_sound, clear_place)
+SUITE_FILLED(prepare, make_sound, clear_place)

@@ -140,8 +140,7 @@ TEST(a_file_half_written_has_no_name)
     assert_int_equal(count_files(folder), 0);
     CHECK_OK(output_close(&o, &err), &err);
     assert_int_equal(count_files(folder), 1);
-    FREED char *text = read_in_place("half/out.csv");
-    assert_string_equal(text, "1\n");
+    assert_text(read_in_place("half/out.csv"), "1\n");
 }
 
 SUITE(make_place, clear_place)

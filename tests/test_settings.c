@@ -1,5 +1,6 @@
 /* The settings table: defaults, ranges, files, messages. */
 #include "bad_inputs.h"
+#include "program.h"
 
 #include <limits.h>
 
@@ -38,15 +39,9 @@ static void pairs_of(const Settings *s, Pairs *p)
 
 static Status read_text(Settings *s, const char *text, Err *why)
 {
-    char path[] = "/tmp/imtet-settings-XXXXXX";
-    const int fd = mkstemp(path);
-    assert_at_most(0, fd);
-    close(fd);
-    write_to(path, text);
+    write_in_place("settings.ini", text);
     settings_defaults(s);
-    const Status status = settings_read(s, path, NULL, NULL, why);
-    remove(path);
-    return status;
+    return settings_read(s, there("settings.ini"), NULL, NULL, why);
 }
 
 static void set(Settings *s, const char *key, const char *value)
@@ -296,29 +291,25 @@ TEST(a_text_that_a_file_would_change_is_refused)
 TEST(all_faults_of_a_file_are_listed_with_their_lines)
 {
     Settings s = default_settings();
-    char path[] = "/tmp/imtet-settings-XXXXXX", *text = NULL;
+    char *text = NULL;
     size_t length = 0;
     int n = 0;
-    close(mkstemp(path));
-    write_to(path, "[motion]\npga_g = -1\nstretc = 2\nwhat is this\n[design]\ngap_m = 0.6, 0.5\n"
-                   "thickness_m = 0.003\n[core]\nsection = tube\n");
+    write_in_place("faults.ini", "[motion]\npga_g = -1\nstretc = 2\nwhat is this\n[design]\ngap_m = 0.6, 0.5\n"
+                                 "thickness_m = 0.003\n[core]\nsection = tube\n");
     FILE *faults = open_memstream(&text, &length);
-    assert_int_equal(settings_read(&s, path, faults, &n, &err), STATUS_BAD_DATA);
+    assert_int_equal(settings_read(&s, there("faults.ini"), faults, &n, &err), STATUS_BAD_DATA);
     fclose(faults);
     assert_int_equal(n, 6);
     assert_words(text, ":2:9: motion.pga_g", ":3:1: motion.stretc", ":4:1: neither", ":6:9: design.gap_m",
                  ":7:15: design.thickness", ":9:11: core.section");
     assert_words(err.text, ":2:9: motion.pga_g");
     free(text);
-    remove(path);
 }
 
 TEST(a_path_in_a_file_is_meant_from_its_folder)
 {
     Settings s = default_settings();
-    char folder[] = "/tmp/imtet-folder-XXXXXX";
-    assert_non_null(mkdtemp(folder));
-    FREED char *ini = formatted("%s/a.ini", folder), *record = formatted("%s/quake.csv", folder);
+    const char *ini = there("a.ini"), *record = there("quake.csv");
     write_to(ini, "[motion]\nrecord = quake.csv\n");
     CHECK_OK(settings_read(&s, ini, NULL, NULL, &err), &err);
     assert_string_equal(s.motion.record, "quake.csv"); /* not there: left for the working directory */
@@ -329,9 +320,6 @@ TEST(a_path_in_a_file_is_meant_from_its_folder)
     CHECK_OK(settings_read(&s, ini, NULL, NULL, &err), &err);
     assert_string_equal(s.motion.records, brief("%s,builtin:sylmar-like,not-there.csv", record));
     assert_string_equal(s.search.start, record);
-    remove(ini);
-    remove(record);
-    rmdir(folder);
 }
 
 TEST(paths_become_absolute_where_they_lead_somewhere)
@@ -408,18 +396,13 @@ TEST(a_missing_file_is_told_from_a_bad_one)
 TEST(what_is_too_large_or_a_device_or_a_left_pipe_is_no_settings_file)
 {
     assert_refused(read_file("/dev/zero", &err), STATUS_BAD_DATA, "/dev/zero: larger than 1 MiB");
-    char path[] = "/tmp/imtet-settings-XXXXXX";
-    const int fd = mkstemp(path);
-    assert_at_most(0, fd);
-    FILE *f = fdopen(fd, "w");
+    FILE *f = opened(there("large.ini"), "w");
     for (int i = 0; i < 1 << 17; i++)
         fputs("; filler\n", f);
     fclose(f);
-    assert_refused(read_file(path, &err), STATUS_BAD_DATA, "larger than 1 MiB");
-    remove(path);
-    assert_int_equal(mkfifo(path, 0600), 0);
-    assert_refused(read_file(path, &err), STATUS_MISSING, "named pipe");
-    remove(path);
+    assert_refused(read_file(there("large.ini"), &err), STATUS_BAD_DATA, "larger than 1 MiB");
+    assert_int_equal(mkfifo(there("pipe"), 0600), 0);
+    assert_refused(read_file(there("pipe"), &err), STATUS_MISSING, "named pipe");
 }
 
 TEST(a_first_study_touches_sixteen_settings)
@@ -509,8 +492,7 @@ TEST(a_key_of_an_earlier_version_is_passed_over_where_a_run_has_it_and_whole_num
     assert_refused(settings_set(&s, "search.asynchronous=on", &err), STATUS_BAD_DATA,
                    "is no setting any more: every search looks ahead");
     CHECK_OK(settings_set(&s, "search.max_evals=1000000", &err), &err);
-    FREED char *text = settings_text(&s);
-    assert_non_null(strstr(text, "\nmax_evals = 1000000\n"));
+    assert_words_in(settings_text(&s), "\nmax_evals = 1000000\n");
 }
 
-SUITE(NULL, NULL)
+SUITE(make_place, clear_place)

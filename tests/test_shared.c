@@ -108,8 +108,8 @@ TEST(it_is_killed_and_read_at_any_moment)
         file_system = NFS;
         const pid_t pid = study_in_child("killed", kills < 9 ? 30 : 0);
         file_system = 0;
-        const double until = now_s() + 0.15 + 0.05 * kills;
-        while (now_s() < until || (looks <= kills / 2 && has_evaluations("killed"))) {
+        const double until = clock_seconds() + 0.15 + 0.05 * kills;
+        while (clock_seconds() < until || (looks <= kills / 2 && has_evaluations("killed"))) {
             if (!has_evaluations("killed")) {
                 rest(0.01);
                 continue;

@@ -66,8 +66,7 @@ TEST(a_run_that_is_finished_is_shown_again_and_a_new_one_gets_a_number)
 {
     FREED char *before = read_in_place("threads-1/front.csv"); /* the hours are of this session: no limit of the run */
     expect_output("finished before", SMALL_STUDY "--threads 2 --max-hours 1 --out @/threads-1");
-    FREED char *after = read_in_place("threads-1/front.csv");
-    assert_string_equal(before, after);
+    assert_text(read_in_place("threads-1/front.csv"), before);
     expect_output("threads-1-2/front.csv", SMALL_STUDY "--new --set run.out=@/threads-1");
 }
 
@@ -102,8 +101,7 @@ TEST(a_design_of_the_front_is_evaluated_on_other_motions)
 TEST(status_tells_a_run_from_a_folder_of_runs)
 {
     expect_output("threads-1: finished", "status @/threads-1");
-    FREED char *said = output_of("status @");
-    assert_words(said, "\nthreads-1 ", "!hypervolume"); /* each has a box of its own */
+    assert_words_in(output_of("status @"), "\nthreads-1 ", "!hypervolume"); /* each has a box of its own */
 }
 
 static const char *record_of(const json_t *list, size_t i)
@@ -142,8 +140,8 @@ TEST(a_design_is_evaluated_on_every_motion_of_a_folder)
         at++;
     const json_t *one = json_array_get(unreadable, at);
     assert_non_null(strstr(json_string_value(json_object_get(one, "reason")), "irregular.csv:26: time 0.24 s breaks"));
-    FREED char *table = output_of("evaluate @/threads-1 --design knee --record tests/motion --set motion.channel=1");
-    assert_words(table, "\none.knet ", "  no core ", "not read: tests/motion/irregular.csv:26");
+    assert_words_in(output_of("evaluate @/threads-1 --design knee --record tests/motion --set motion.channel=1"),
+                    "\none.knet ", "  no core ", "not read: tests/motion/irregular.csv:26");
     expect(65, "holds no ground motion that can be read", "evaluate @/threads-1 --design knee --record configs/sac20");
     expect(65, "not read: tests/motion/one.knet: motion.channel '99' is not exactly one of its channels",
            "evaluate @/threads-1 --design knee --record tests/motion --set motion.channel=99");

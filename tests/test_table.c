@@ -1,8 +1,8 @@
 /* Tables of numbers, and the design files built on them. */
 #include "bad_inputs.h"
+#include "program.h"
 
 #include "scene/design.h"
-#include "base/csv.h"
 
 static Status parse(Table *t, const char *text, int has_header, Err *why)
 {
@@ -148,13 +148,6 @@ static const char DESIGNS[] = "# two designs for two floors\n"
                               "# the thick one\n"
                               "0.03,0.04,0.02,0.03\n";
 
-static void write_file(const char *path, const char *text)
-{
-    FILE *f = opened(path, "w");
-    assert_at_most(0, fputs(text, f));
-    assert_int_equal(fclose(f), 0);
-}
-
 static const DesignSpace *paper_space(int n_floors)
 {
     static DesignSpace space;
@@ -165,17 +158,13 @@ static const DesignSpace *paper_space(int n_floors)
 TEST(a_design_file_gives_its_rows_and_their_lines)
 {
     OWNED(design_free) Designs d;
-    char path[] = "/tmp/imtet-design-XXXXXX";
-    const int fd = mkstemp(path);
-    assert_at_most(0, fd);
-    write_file(path, DESIGNS);
-    CHECK_OK(design_read(&d, path, paper_space(2), &err), &err);
+    write_in_place("designs.csv", DESIGNS);
+    CHECK_OK(design_read(&d, there("designs.csv"), paper_space(2), &err), &err);
     const double want[] = {0.01, 0, 0.012, 0.0064, 0.03, 0.04, 0.02, 0.03};
     assert_int_equal(d.n, 2);
     assert_memory_equal(d.x, want, sizeof want);
     assert_int_equal(d.line[0], 4);
     assert_int_equal(d.line[1], 6);
-    remove(path);
 }
 
 TEST(variables_are_named_by_floor_from_the_bottom)
@@ -201,14 +190,10 @@ TEST(every_bad_design_file_is_refused_with_its_fault)
 
 TEST(a_named_pipe_is_refused_before_it_is_waited_for)
 {
-    char folder[] = "/tmp/imtet-pipe-XXXXXX", path[64], *text;
+    char *text;
     size_t length;
-    assert_non_null(mkdtemp(folder));
-    snprintf(path, sizeof path, "%s/pipe", folder);
-    assert_int_equal(mkfifo(path, 0600), 0);
-    assert_refused(file_read(path, FILE_LARGEST, &text, &length, &err), STATUS_MISSING, "is a named pipe");
-    unlink(path);
-    rmdir(folder);
+    assert_int_equal(mkfifo(there("pipe"), 0600), 0);
+    assert_refused(file_read(there("pipe"), FILE_LARGEST, &text, &length, &err), STATUS_MISSING, "is a named pipe");
 }
 
-SUITE(NULL, NULL)
+SUITE(make_place, clear_place)

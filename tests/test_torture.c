@@ -140,10 +140,10 @@ static void torture(const Prey *prey, long kills)
     Figures f = {0};
     FREED char *reference = formatted("%s/%s-whole", place.folder, prey->name);
     FREED char *folder = formatted("%s/%s-killed", place.folder, prey->name);
-    const double begun = now_s();
+    const double begun = clock_seconds();
     int status;
     assert_true(waitpid(start(prey, reference, 0), &status, 0) > 0 && WIFEXITED(status) && WEXITSTATUS(status) == 0);
-    const double whole = now_s() - begun;
+    const double whole = clock_seconds() - begun;
     srand(7);
     while (f.kills < kills) {
         const int is_early = f.kills % 6 >= 4; /* twice in a row */

@@ -97,10 +97,8 @@ TEST(wrong_variables_are_refused_with_their_key)
 {
     FOR_EACH (const char *, list, "gaps", "thickness, bumper", "gaps, thickness, bumpr", "gaps,,thickness",
               "gaps, thickness, symmetric", "none") {
-        OWNED(forget) Said s;
-        run(&s, "simulate configs/quick.ini --design none --set 'design.variables=%s'", *list);
-        assert_int_not_equal(s.code, 0);
-        assert_non_null(strstr(s.err, "design.variables"));
+        expect(65, "design.variables",
+               brief("simulate configs/quick.ini --design none --set 'design.variables=%s'", *list));
     }
     DesignSpace space;
     DesignOptions o = scene_defaults().design;
@@ -148,13 +146,10 @@ TEST(a_design_is_simulated_the_same_by_any_variables)
 
 static char *said; /* by the search */
 
-static int make_run(void **state)
+static void make_run(void)
 {
-    if (make_place(state) != 0)
-        return -1;
     said = output_of("optimize configs/quick.ini --out @/run --threads 2 --max-evals 24 --set search.initial=12 "
                      "--set search.population=12 --set search.polish=0 " WIDE SHORT);
-    return 0;
 }
 
 static int end_run(void **state)
@@ -197,15 +192,9 @@ TEST(every_command_follows_the_variables_of_a_run)
 
 TEST(designs_of_other_variables_are_refused)
 {
-    Said s;
-    run(&s, "simulate configs/quick.ini " SHORT "--design @/run:knee");
-    assert_int_not_equal(s.code, 0);
-    assert_non_null(strstr(s.err, "design.variables"));
-    forget(&s);
-    run(&s, "simulate configs/quick.ini " SHORT "--design @/run/front.csv");
-    assert_int_not_equal(s.code, 0);
-    assert_non_null(strstr(s.err, "other design.variables: a design of these"));
-    forget(&s);
+    expect(65, "design.variables", "simulate configs/quick.ini " SHORT "--design @/run:knee");
+    expect(65, "other design.variables: a design of these",
+           "simulate configs/quick.ini " SHORT "--design @/run/front.csv");
 }
 
-SUITE(make_run, end_run)
+SUITE_FILLED(make_place, make_run, end_run)

@@ -17,11 +17,8 @@ static json_t *simulated(size_t r, const char *word, const char *more)
                    RECORDS[r], word, more);
 }
 
-static int make_run(void **state)
+static void make_run(void)
 {
-    long id;
-    if (make_place(state) != 0)
-        return -1;
     free(output_of(
         "optimize configs/quick.ini " SIX_FLOORS "--out @/run --max-evals 10 --set search.initial=8 --set "
         "search.population=8 --set search.polish=0 --set sim.accuracy=coarse --record builtin:kobe-like --set "
@@ -29,9 +26,8 @@ static int make_run(void **state)
     FREED char *stored = read_in_place("run/verdicts.json");
     json_t *all = json_loads(stored, 0, NULL), *text = json_object_iter_value(json_object_iter(all));
     OWNED(run_free) Run run = run_in("run");
-    id = run.table.row[run_knee(&run)].id;
-    if (!text || atol(json_object_iter_key(json_object_iter(all))) != id)
-        return -1;
+    const long id = run.table.row[run_knee(&run)].id;
+    assert_true(text && atol(json_object_iter_key(json_object_iter(all))) == id);
     snprintf(verdict, sizeof verdict, "%s", json_string_value(text));
     char rest[800] = "", *run_at = strstr(verdict, " RUN ");
     strncat(rest, run_at + 4, sizeof rest - 1);
@@ -42,7 +38,7 @@ static int make_run(void **state)
             snprintf(sentence[n++], sizeof *sentence, "%.*s", (int)(end - at), at);
     }
     json_decref(all);
-    return sentence[4][0] ? 0 : -1;
+    assert_true(sentence[4][0]);
 }
 
 /* The number behind a word of a text, behind `after`. */
@@ -77,8 +73,7 @@ TEST(a_verdict_that_is_not_stored_is_found_again_word_for_word)
 {
     FREED char *said = output_of("evaluate @/run --design knee");
     assert_int_equal(unlink(there("run/verdicts.json")), 0);
-    FREED char *again = output_of("evaluate @/run --design knee");
-    assert_string_equal(said, again);
+    assert_text(output_of("evaluate @/run --design knee"), said);
 }
 
 TEST(factors_are_medians_over_the_records_of_simulations_one_by_one)
@@ -185,4 +180,4 @@ TEST(better_is_by_more_than_a_thousandth_and_the_error)
     assert_int_equal(verdict_compare(1, 1, NAN, 2), 1);
 }
 
-SUITE(make_run, clear_place)
+SUITE_FILLED(make_place, make_run, clear_place)

@@ -6,9 +6,9 @@
 #include <stdlib.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
-#include <time.h>
 #include <unistd.h>
 
+#include "base/clock.h"
 #include "store/output.h"
 
 enum { CASES_MAX = 64 };
@@ -21,13 +21,6 @@ typedef struct {
 
 static const char *const WORDS[VERDICTS] = {
     [HOLDS] = "holds", [FLAGGED] = "flagged", [REFUSED] = "refused", [FAILED] = "fails"};
-
-static double seconds_now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 static void run_here(const Case *c, Trial *t, int to, unsigned seconds)
 {
@@ -59,7 +52,7 @@ typedef struct {
 static Worker start_cell(const Case *c, Trial *t, unsigned seconds)
 {
     int ends[2];
-    Worker w = {.start = seconds_now()};
+    Worker w = {.start = clock_seconds()};
     fflush(NULL);
     if (pipe(ends) != 0 || (w.child = fork()) < 0) {
         perror("stability: no process");
@@ -137,7 +130,7 @@ static int reap(Board *b, Worker workers[], int *n, const StabilityPlan *a)
     Trial *t = &b->trial[w.i][w.e];
     workers[k] = workers[--*n];
     finish_cell(&w, state, t, cell_seconds(a, t));
-    print_cell(b->cases[w.i], t, seconds_now() - w.start);
+    print_cell(b->cases[w.i], t, clock_seconds() - w.start);
     return is_wrong(t);
 }
 

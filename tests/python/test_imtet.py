@@ -5,6 +5,7 @@ import importlib.util
 import json
 import math
 import os
+import pathlib
 import pickle
 import random
 import shutil
@@ -28,6 +29,9 @@ SETTINGS = {"initial": 16, "population": 12, "threads": 1}
 SIX = {"building.model": os.path.join(ROOT, "configs/neighbours/tower"), "core.width_m": 5, "design.gap_m": "0.001,0.05",
        "motion.pga_g": 0.3}
 SHORT = [w for k, v in {**SIX, "motion.record": "builtin:elcentro-like", "sim.duration_s": 8}.items() for w in ("--set", f"{k}={v}")]
+
+NEEDS_PANDAS, NEEDS_MATPLOTLIB = (unittest.skipUnless(importlib.util.find_spec(name), f"{name} (python3-{name}) is not here")
+                                  for name in ("pandas", "matplotlib"))
 
 
 def f(x):
@@ -63,8 +67,7 @@ np.save(state + ".npy", np.hstack(s.told()[:2]))
 
 def driver():
     name = os.path.join(PLACE, "driver.py")
-    with open(name, "w") as out:
-        out.write(DRIVER.format(place=PLACE, here=os.path.dirname(os.path.abspath(__file__))))
+    pathlib.Path(name).write_text(DRIVER.format(place=PLACE, here=os.path.dirname(os.path.abspath(__file__))))
     return name
 
 
@@ -75,13 +78,13 @@ def program(*words):
 class Searching(unittest.TestCase):
     def test_designs_are_those_of_optimize_with_the_same_function_as_a_worker(self):
         worker = os.path.join(PLACE, "worker.py")
-        with open(worker, "w") as out:
-            out.write("import json, math, sys\nfor line in sys.stdin:\n    r = json.loads(line)\n    x = r['x']\n"
-                      "    a = {'f': [x[0], (1 - math.sqrt(x[0])) + sum((v - 0.5) ** 2 for v in x[1:])]}\n"
-                      "    print(json.dumps({'id': r['id'], **({'error': 'no'} if 0.30 < x[0] < 0.42 else a)}), flush=True)\n")
-        with open(os.path.join(PLACE, "w.ini"), "w") as out:
-            out.write(f"[problem]\nkind = external\ncommand = python3 {worker}\nvariables = 4\nobjectives = 2\n[search]\n"
-                      "initial = 16\npopulation = 12\nmax_evals = 60\nthreads = 1\n")
+        pathlib.Path(worker).write_text(
+            "import json, math, sys\nfor line in sys.stdin:\n    r = json.loads(line)\n    x = r['x']\n"
+            "    a = {'f': [x[0], (1 - math.sqrt(x[0])) + sum((v - 0.5) ** 2 for v in x[1:])]}\n"
+            "    print(json.dumps({'id': r['id'], **({'error': 'no'} if 0.30 < x[0] < 0.42 else a)}), flush=True)\n")
+        pathlib.Path(PLACE, "w.ini").write_text(
+            f"[problem]\nkind = external\ncommand = python3 {worker}\nvariables = 4\nobjectives = 2\n[search]\n"
+            "initial = 16\npopulation = 12\nmax_evals = 60\nthreads = 1\n")
         program("optimize", os.path.join(PLACE, "w.ini"), "--out", os.path.join(PLACE, "w"))
         run = imtet.open_run(os.path.join(PLACE, "w"))
         F, X, _ = drive(search()).told()
@@ -96,8 +99,7 @@ class Searching(unittest.TestCase):
 
     def test_designs_are_asked_for_in_whole_numbers(self):
         for n in (1.5, -1, "2", math.nan):
-            with self.assertRaisesRegex(ValueError, f"n is {n!r}, wanted an int: how many designs"):
-                search().ask(n)
+            self.assertRaisesRegex(ValueError, f"n is {n!r}, wanted an int: how many designs", search().ask, n)
         self.assertEqual(len(search().ask(np.int32(2))), 2)
 
     def test_f_that_raises_or_says_nothing_fails_its_design_alone(self):
@@ -130,33 +132,25 @@ class Searching(unittest.TestCase):
     def test_what_makes_no_sense_is_said_so(self):
         s = search()
         X = s.ask(3)
-        with self.assertRaisesRegex(ValueError, r"X has shape \(3, 2\), wanted \(n, 4\)"):
-            s.tell(X[:, :2], np.ones((3, 2)))
+        self.assertRaisesRegex(ValueError, r"X has shape \(3, 2\), wanted \(n, 4\)", s.tell, X[:, :2], np.ones((3, 2)))
         for Y, words in ((np.ones((2, 2)), r"X has 3 rows, Y 2: wanted shape \(3, 2\)"),
                          (np.ones((3, 3)), r"row 0 of Y has shape \(3,\), wanted \(2,\)"),
                          (None, r"Y is None, wanted rows of shape \(3, 2\)"),
                          ([[1, 2], ["a", "b"], [1, 2]], r"row 1 of Y: .*'a'; wanted numbers of shape \(2,\)")):
-            with self.assertRaisesRegex(ValueError, words):
-                s.tell(X, Y)
+            self.assertRaisesRegex(ValueError, words, s.tell, X, Y)
         with self.assertRaisesRegex(ValueError, r"row 0 of Y is no tuple \(f, g\), and there is no G of shape \(1, 1\)"):
             bounded = imtet.Search([0] * 3, [1] * 3, 2, constraints=1)
             bounded.tell(bounded.ask(1), [[[1, 2], [3]]])
         with self.assertRaisesRegex(ValueError, r"row 1 of X was not asked for.*nearest design under way, 2, is 2e-06 of the box away"):
             s.tell(np.array([X[0], X[1] + 2e-6, X[2]]), np.ones((3, 2)))
-        with self.assertRaisesRegex(imtet.ImtetError, "F of design 2: number 1 is nan"):
-            s.tell(X, [[1, 2], [math.nan, 2], [1, 2]])
-        with self.assertRaisesRegex(ValueError, "X: .*wanted numbers of shape"):
-            s.tell([["a", "b"]], [[1, 2]])
+        self.assertRaisesRegex(imtet.ImtetError, "F of design 2: number 1 is nan", s.tell, X, [[1, 2], [math.nan, 2], [1, 2]])
+        self.assertRaisesRegex(ValueError, "X: .*wanted numbers of shape", s.tell, [["a", "b"]], [[1, 2]])
         self.assertEqual(s.state["told"], 0)
         s.tell(X, np.ones((3, 2)))
-        with self.assertRaisesRegex(imtet.ImtetError, "design 1 is told already"):
-            s.tell(X, np.ones((3, 2)))
-        with self.assertRaisesRegex(imtet.ImtetError, "populaton is no setting.*did you mean population"):
-            search(populaton=3)
-        with self.assertRaisesRegex(imtet.ImtetError, "is no saved search"):
-            imtet.Search.load(__file__)
-        with self.assertRaisesRegex(ValueError, "objectives is -1, wanted a whole number of 1 or more"):
-            imtet.Search([0], [1], objectives=-1)
+        self.assertRaisesRegex(imtet.ImtetError, "design 1 is told already", s.tell, X, np.ones((3, 2)))
+        self.assertRaisesRegex(imtet.ImtetError, "populaton is no setting.*did you mean population", search, populaton=3)
+        self.assertRaisesRegex(imtet.ImtetError, "is no saved search", imtet.Search.load, __file__)
+        self.assertRaisesRegex(ValueError, "objectives is -1, wanted a whole number of 1 or more", imtet.Search, [0], [1], objectives=-1)
         with self.assertRaisesRegex(imtet.ImtetError, "start: variable 2 of design 1 is 3.5; it is a whole number"):
             imtet.Search([0, 0], [1, 5], 2, kinds="real,int", start=[[0.5, 3.5]])
 
@@ -201,17 +195,14 @@ class Searching(unittest.TestCase):
     def test_equal_designs_are_told_oldest_first(self):
         s = imtet.Search([1, 1], [1, 2], 2, kinds="int", evaluations=8, initial=4, population=4)
         X = s.ask(2)
-        with self.assertRaisesRegex(imtet.ImtetError, "design 1 is told twice"):
-            s.tell(X[[0, 0]], [[1, 2]] * 2)
+        self.assertRaisesRegex(imtet.ImtetError, "design 1 is told twice", s.tell, X[[0, 0]], [[1, 2]] * 2)
         s._under_way[2][:] = s._under_way[1]
         s.tell(np.asarray(s._under_way[1]), [[7, 7]])
         np.testing.assert_array_equal(s.told()[1], X[:1])
 
+    @NEEDS_PANDAS
     def test_tables_of_pandas_are_taken_and_made(self):
-        try:
-            import pandas
-        except ImportError:
-            self.skipTest("pandas (python3-pandas) is not here")
+        import pandas
         np.testing.assert_array_equal(self.told_as(lambda X, o: X.to_frame().iloc[o].round(1)),
                                       self.told_as(lambda X, o: pandas.DataFrame(np.asarray(X)).iloc[o]))
         s = imtet.Search([0] * 3, [1] * 3, 2, constraints=1, evaluations=60, **SETTINGS)
@@ -226,35 +217,29 @@ class Searching(unittest.TestCase):
         self.assertTrue((front.g1 <= 0).all())
         np.testing.assert_array_equal(s._table()[-1], whole.g1 <= 0)
 
+    @NEEDS_MATPLOTLIB
     def test_pictures_are_drawn_and_the_history_grows_to_the_area_that_is_dominated(self):
         from imtet._tables import growth
         F = np.array([[3.0, 3.0], [0.0, 1.0], [1.0, 0.0], [0.5, 0.5]])
         share = growth(F, np.array([False, True, True, True]))
         self.assertEqual(list(share[:3]), [0, 0, 0])
         self.assertAlmostEqual(share[3], 0.25, delta=0.03)
-        try:
-            import matplotlib
-        except ImportError:
-            self.skipTest("matplotlib (python3-matplotlib) is not here")
+        import matplotlib
         matplotlib.use("Agg")
         s = drive(search())
         for kind in ("pairs", "parallel", "history"):
             name = os.path.join(PLACE, kind + ".png")
             s.plot(kind).savefig(name)
             self.assertGreater(os.path.getsize(name), 5000)
-        with self.assertRaisesRegex(ValueError, "kind is 'pears', wanted pairs, parallel or history"):
-            s.plot("pears")
-        with self.assertRaisesRegex(ValueError, "nothing to be drawn"):
-            search().plot()
+        self.assertRaisesRegex(ValueError, "kind is 'pears', wanted pairs, parallel or history", s.plot, "pears")
+        self.assertRaisesRegex(ValueError, "nothing to be drawn", search().plot)
 
     def test_only_what_is_to_be_caught_fails_a_design(self):
         s = search()
         X = s.ask(3)
-        with self.assertRaises(NameError):
-            s.evaluate(lambda x: nowhere(x), X)  # noqa: F821
+        self.assertRaises(NameError, s.evaluate, lambda x: nowhere(x), X)  # noqa: F821
         self.assertIsInstance(s.evaluate(lambda x: nowhere(x), X, catch=NameError)[2], NameError)  # noqa: F821
-        with self.assertRaises(ZeroDivisionError):
-            s.evaluate(lambda x: 1 / 0, X, catch=(OSError, ValueError))
+        self.assertRaises(ZeroDivisionError, s.evaluate, lambda x: 1 / 0, X, catch=(OSError, ValueError))
         self.assertIsInstance(s.evaluate(lambda x: 1 / 0, X)[0], ZeroDivisionError)
 
     def test_ctrl_c_in_a_batch_loses_no_finished_evaluation(self):
@@ -266,8 +251,7 @@ class Searching(unittest.TestCase):
                 if len(called) == 6:
                     raise KeyboardInterrupt
                 return f(x)
-            with self.assertRaises(KeyboardInterrupt):
-                s.run(slow, batch=8, threads=threads)
+            self.assertRaises(KeyboardInterrupt, s.run, slow, batch=8, threads=threads)
             self.assertEqual((s.state["told"], s.state["under_way"]), (0, 8))
             s.run(slow, batch=8, threads=threads)
             self.assertEqual(len(called), len(set(called)) + 1)  # the one that was interrupted
@@ -309,8 +293,7 @@ class Searching(unittest.TestCase):
         s = search()
         X = s.ask(100)
         self.assertEqual((len(X), s.ask_ready, len(s.under_way)), (16, False, 16))
-        with self.assertRaisesRegex(imtet.ImtetError, "before one of the 16 under way is told"):
-            s.ask()
+        self.assertRaisesRegex(imtet.ImtetError, "before one of the 16 under way is told", s.ask)
         np.testing.assert_array_equal(s.under_way.ids, X.ids)
 
         def work():
@@ -333,12 +316,10 @@ class Searching(unittest.TestCase):
         b = imtet.Search([0, 0], [1, 1], 2, senses="min,max", seed=a.seed)
         np.testing.assert_array_equal(a.ask(9), b.ask(9))
         for word, ours in (("pop_size", "population"), ("n_obj", "objectives"), ("n_trials", "evaluations")):
-            with self.assertRaisesRegex(TypeError, f"no {word}; here it is {ours}"):
-                imtet.Search([0, 0], [1, 1], **{word: 2})
+            self.assertRaisesRegex(TypeError, f"no {word}; here it is {ours}", imtet.Search, [0, 0], [1, 1], **{word: 2})
         for wrong, said in (({"evaluations": -3}, "^evaluations: -3 is outside"), ({"kinds": "reel"}, "^kinds: 'reel'"),
                             ({"senses": "up"}, "^senses: item 1"), ({"population": 1.5}, "^population: 1.5")):
-            with self.assertRaisesRegex(imtet.ImtetError, said):
-                imtet.Search([0, 0], [1, 1], 2, **wrong)
+            self.assertRaisesRegex(imtet.ImtetError, said, imtet.Search, [0, 0], [1, 1], 2, **wrong)
 
     def test_a_loop_calls_back_and_ends_when_it_is_told_to(self):
         seen = []
@@ -390,8 +371,7 @@ class Searching(unittest.TestCase):
 
     def test_saves_of_several_processes_are_each_whole_and_the_one_before_is_kept(self):
         path, victim = os.path.join(PLACE, "shared.search"), os.path.join(PLACE, "victim")
-        with open(victim, "w") as out:
-            out.write("mine")
+        pathlib.Path(victim).write_text("mine")
         s = search()
         for name in (path, path + ".part", f"{path}.{os.getpid()}.tmp"):
             os.symlink(victim, name)
@@ -400,8 +380,7 @@ class Searching(unittest.TestCase):
         s.tell(X, s.evaluate(f, X))
         s.save(path)
         self.assertFalse(os.path.islink(path))
-        with open(victim) as text:
-            self.assertEqual(text.read(), "mine")
+        self.assertEqual(pathlib.Path(victim).read_text(), "mine")
         self.assertEqual([imtet.Search.load(p).state["told"] for p in (path + ".prev", path)], [0, 5])
         s.save(path)  # both tell of five designs before others save
         children = []
@@ -421,29 +400,25 @@ class Searching(unittest.TestCase):
         with open(path, "r+b") as file:
             file.seek(200)
             file.write(b"x")
-        with self.assertRaisesRegex(imtet.ImtetError, "is damaged.*the save before has .prev behind the name"):
-            imtet.Search.load(path)
+        self.assertRaisesRegex(imtet.ImtetError, "is damaged.*the save before has .prev behind the name", imtet.Search.load, path)
 
     def test_where_every_design_fails_the_front_says_why(self):
         s = imtet.Search([0] * 4, [1] * 4, 2, evaluations=40)
         while not s.done:
             X = s.ask(7)
             s.tell(X, [None, *[RuntimeError("no licence")] * (len(X) - 1)])
-        with self.assertRaisesRegex(imtet.ImtetError, "none of 40 simulations succeeded; 34 failed with: RuntimeError: no licence"):
-            s.front()
+        self.assertRaisesRegex(imtet.ImtetError, "none of 40 simulations succeeded; 34 failed with: RuntimeError: no licence", s.front)
         self.assertEqual(len(s.told()[0]), 40)
 
     def test_handles_cannot_be_copied_and_values_can(self):
         scene = imtet.Scene(None, **SIX)
         for handle in (search(), scene):
             for copied in (copy.copy, copy.deepcopy, pickle.dumps):
-                with self.assertRaisesRegex(TypeError, f"a {type(handle).__name__} cannot be copied or pickled: "):
-                    copied(handle)
+                self.assertRaisesRegex(TypeError, f"a {type(handle).__name__} cannot be copied or pickled: ", copied, handle)
         r = scene.simulate(gaps=0.004, thickness=0.02)
         for other in (copy.copy(r), pickle.loads(pickle.dumps(r))):
             self.assertEqual((other.j1_m, other.names), (r.j1_m, r.names))
-            with self.assertRaisesRegex(ValueError, "a copy, which has no scene"):
-                other.history()
+            self.assertRaisesRegex(ValueError, "a copy, which has no scene", other.history)
 
     def test_a_driver_that_is_killed_at_random_moments_loses_nothing(self):
         state = os.path.join(PLACE, "killed.search")
@@ -490,23 +465,20 @@ class Simulating(unittest.TestCase):
         self.assertAlmostEqual(abs(h.floor_m).max(), r.j1_m, delta=0.02 * r.j1_m)
         self.assertGreater(scene.simulate(kind="no_core").j1_m, 0)
         for every in (-1, math.nan, 1e7, "x"):
-            with self.assertRaisesRegex(ValueError, f"every is {every!r}, wanted seconds"):
-                r.history(every)
+            self.assertRaisesRegex(ValueError, f"every is {every!r}, wanted seconds", r.history, every)
         with self.assertRaisesRegex(AttributeError, "no result is called j1; did you mean j1_m?.* there are j1_m, j2_m, j3_g"):
             r.j1
         with self.assertRaisesRegex(AttributeError, "did you mean peak_drift_m?"):
             r.peak_drft_m
         self.assertFalse(hasattr(r, "j1"))
-        with self.assertRaisesRegex(TypeError, "x and gaps, side_m are given: give x alone"):
-            scene.simulate(scene.lower, gaps=0.004, side_m=3)
+        self.assertRaisesRegex(TypeError, "x and gaps, side_m are given: give x alone", scene.simulate, scene.lower, gaps=0.004, side_m=3)
         with self.assertRaisesRegex(ValueError, "no variable of this scene: side_m"):
             scene.simulate(kind="no_core", gaps=0.004, thickness=0.01, side_m=3)
         for wrong, words in ((dict(gaps=[1, 2], thickness=0.01), r"gaps has shape \(2,\), wanted one number or \(6,\)"),
                              (dict(gaps=0.01), "missing: t_base_m, t_top_m"),
                              (dict(gaps=0.01, thickness=0.01, side_m=3), "no variable of this scene: side_m"),
                              (dict(x=np.ones((2, 4))), r"x has shape \(2, 4\), wanted \(8,\)")):
-            with self.assertRaisesRegex((ValueError, imtet.ImtetError), words):
-                scene.simulate(**wrong)
+            self.assertRaisesRegex((ValueError, imtet.ImtetError), words, scene.simulate, **wrong)
 
     def test_other_threads_run_while_one_simulates(self):
         scene, ticks, stop = imtet.Scene(), [0], threading.Event()
@@ -545,17 +517,13 @@ class Simulating(unittest.TestCase):
             for name in run.objectives:
                 self.assertAlmostEqual(run.simulate(number)[name], run.design(number)[name], delta=1e-6 * abs(run.design(number)[name]))
         self.assertGreater(len(named), 0)
-        with self.assertRaisesRegex(KeyError, "no design has the id 100000"):
-            run.design(100000)
-        with self.assertRaisesRegex(KeyError, "'knee' is not an id"):
-            run.simulate("knee")
-        with self.assertRaisesRegex(FileNotFoundError, "no run is there"):
-            imtet.open_run(PLACE)
+        self.assertRaisesRegex(KeyError, "no design has the id 100000", run.design, 100000)
+        self.assertRaisesRegex(KeyError, "'knee' is not an id", run.simulate, "knee")
+        self.assertRaisesRegex(FileNotFoundError, "no run is there", imtet.open_run, PLACE)
         said = json.loads(program("evaluate", out, "--design", "knee", "--json"))["verdict"]
         self.assertEqual(run.verdict(int(run.knee.id)), said)
         self.assertIn("Against no core", said)
-        with self.assertRaisesRegex(KeyError, f"imtet report {out} --design 100000"):
-            run.verdict(100000)
+        self.assertRaisesRegex(KeyError, f"imtet report {out} --design 100000", run.verdict, 100000)
 
     def test_a_run_that_is_not_what_was_written_is_refused_as_the_program_does(self):
         whole, other = os.path.join(PLACE, "whole"), os.path.join(PLACE, "other")
@@ -565,8 +533,7 @@ class Simulating(unittest.TestCase):
         self.assertEqual(json.loads(program("optimize", whole, "--json"))["knee"]["design"], run.knee.id)
         self.assertEqual(run.best("j3_g").j3_g, run.front.j3_g.min())
         self.assertEqual(run.best("ed5_10_pct").ed5_10_pct, run.front.ed5_10_pct.max())
-        with self.assertRaisesRegex(KeyError, "'j4' is not an objective of this run; it has j1_m"):
-            run.best("j4")
+        self.assertRaisesRegex(KeyError, "'j4' is not an objective of this run; it has j1_m", run.best, "j4")
         self.assertIn("28 designs" if len(run.designs) == 28 else "designs", repr(run))
         damages = (("UPDATE evaluation SET j1_m = j1_m * 1.0000000001 WHERE id = 3", "evaluation 3 is not what was written"),
                    ("UPDATE evaluation SET outcome = 'ok', reason = 'x' WHERE id = 4", "evaluation 4 is not"),
@@ -588,22 +555,15 @@ class Simulating(unittest.TestCase):
             db.commit()
             db.close()
             with self.subTest(sql):
-                with self.assertRaisesRegex(imtet.ImtetError, said):
-                    imtet.open_run(other)
-                with self.assertRaises(imtet.ImtetError):
-                    imtet.merge_fronts(whole, other)
+                self.assertRaisesRegex(imtet.ImtetError, said, imtet.open_run, other)
+                self.assertRaises(imtet.ImtetError, imtet.merge_fronts, whole, other)
                 refused = subprocess.run([PROGRAM, "export", other, "--csv", "-"], capture_output=True, text=True)
                 self.assertIn(refused.returncode, (65, 74), refused.stderr)
-        with open(os.path.join(other, "run.sqlite"), "wb") as file:
-            file.write(b"SQLite format 3\0" + bytes(5000))
-        with self.assertRaises(imtet.ImtetError):
-            imtet.open_run(other)
+        pathlib.Path(other, "run.sqlite").write_bytes(b"SQLite format 3\0" + bytes(5000))
+        self.assertRaises(imtet.ImtetError, imtet.open_run, other)
 
+    @NEEDS_PANDAS
     def test_of_a_run_a_table_has_its_designs(self):
-        try:
-            import pandas  # noqa: F401
-        except ImportError:
-            self.skipTest("pandas (python3-pandas) is not here")
         run = imtet.open_run(os.path.join(PLACE, "six"))
         table = run.to_frame(front=True)
         np.testing.assert_array_equal(table.index, run.front.id)
@@ -625,8 +585,7 @@ class Simulating(unittest.TestCase):
         self.assertEqual(set(of), {0, 1})
         again, _ = imtet.merge_fronts(a, a)
         self.assertEqual(len(again), len(imtet.open_run(a).front))
-        with self.assertRaisesRegex(ValueError, "are runs of two problems: motion.stretch 3.1 and 2"):
-            imtet.merge_fronts(a, b, c)
+        self.assertRaisesRegex(ValueError, "are runs of two problems: motion.stretch 3.1 and 2", imtet.merge_fronts, a, b, c)
 
     def test_a_record_is_read(self):
         dt, a, meta = imtet.read_motion("builtin:kobe-like", pga_g=0.1)
@@ -680,10 +639,8 @@ class Examples(unittest.TestCase):
                 self.assertEqual(done.returncode, 0, name + ": " + done.stderr)
 
     def test_the_ten_lines_of_the_readme_run(self):
-        with open(os.path.join(ROOT, "python", "README.md")) as text:
-            code = text.read().split("```python\n")[1].split("```")[0]
         names = {}
-        exec(code, names)
+        exec(pathlib.Path(ROOT, "python", "README.md").read_text().split("```python\n")[1].split("```")[0], names)
         self.assertGreater(len(names["F"]), 3)
 
 
