@@ -109,8 +109,9 @@ TEST(bash_offers_commands_options_keys_and_words)
 /* Skipped where the shell is not on this machine, and for a program that is not to be installed. */
 static void install_for(const char *name)
 {
-    FREED char *found = shell("which %s || true", name);
+    char *found = shell("which %s || true", name);
     const int is_there = found[0] != 0;
+    free(found);
     if (!is_there || access("build/release/libimtet.so", F_OK) != 0 || strstr(getenv("IMTET"), "/build/"))
         skip();
     free(shell("make -s -o imtet install PREFIX=@/opt"));
