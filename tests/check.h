@@ -256,11 +256,10 @@ static inline void write_to(const char *path, const char *text)
 /* The command of a shell succeeds. */
 __attribute__((format(printf, 1, 2))) static inline void expect_shell(const char *format, ...)
 {
-    char command[4096];
+    FREED char *command = NULL;
     va_list list;
     va_start(list, format);
-    vsnprintf(command, sizeof command, format, list);
-    va_end(list);
-    if (system(command) != 0)
+    if (vasprintf(&command, format, list) < 0 || system(command) != 0)
         fail_msg("%s", command);
+    va_end(list);
 }

@@ -54,15 +54,7 @@ static inline char *path_of(const char *name, char path[PATH_MAX])
 }
 
 /* In the test's own folder. */
-__attribute__((format(printf, 1, 2))) static inline void shell_in_place(const char *format, ...)
-{
-    char spread[1024];
-    va_list list;
-    va_start(list, format);
-    vsnprintf(spread, sizeof spread, format, list);
-    va_end(list);
-    expect_shell("cd '%s' && %s", place.folder, spread);
-}
+#define shell_in_place(...) expect_shell("cd '%s' && %s", place.folder, brief(__VA_ARGS__))
 
 /* `database` is a file there. */
 static inline void change_database(const char *database, const char *statements)

@@ -79,13 +79,13 @@ static SearchStart moment(const Seen *s, size_t k)
 }
 
 /* From every `step`-th moment but the last. */
-static void check_every_moment(const SearchConfig *c, size_t step)
+static void check_every_moment(SearchConfig c, size_t step)
 {
-    run_noting(&here.problem, c, NULL, &whole);
+    run_noting(&here.problem, &c, NULL, &whole);
     assert_less(step + 1, whole.moments.n);
     for (size_t k = 0; k + 1 < whole.moments.n; k += step) {
         const SearchStart start = moment(&whole, k);
-        run_noting(&here.problem, c, &start, &resumed);
+        run_noting(&here.problem, &c, &start, &resumed);
         assert_int_equal(resumed.first_generation, k + 1);
         assert_same_search(&here, &whole, &resumed);
     }
@@ -94,23 +94,20 @@ static void check_every_moment(const SearchConfig *c, size_t step)
 TEST(a_search_goes_on_from_any_generation_as_if_it_had_never_stopped)
 {
     world(&here, 6, 3, 0);
-    const SearchConfig c = config(20, 60);
-    check_every_moment(&c, 1);
+    check_every_moment(config(20, 60), 1);
 }
 
 TEST(seven_objectives_go_on_the_same)
 {
     world(&here, 22, 7, 0);
-    const SearchConfig c = config(30, 54);
-    check_every_moment(&c, 3);
+    check_every_moment(config(30, 54), 3);
 }
 
 TEST(failed_and_infeasible_designs_do_not_change_that)
 {
     world(&here, 5, 2, 1);
     here.fail_every = 4;
-    const SearchConfig c = config(16, 52);
-    check_every_moment(&c, 2);
+    check_every_moment(config(16, 52), 2);
 }
 
 TEST(whole_numbers_choices_and_logarithms_go_on_the_same)
@@ -122,8 +119,7 @@ TEST(whole_numbers_choices_and_logarithms_go_on_the_same)
     memcpy(here.upper, UPPER, sizeof UPPER);
     here.lower[1] = 1e-3;
     here.problem.kind = KINDS;
-    const SearchConfig c = config(20, 90);
-    check_every_moment(&c, 2);
+    check_every_moment(config(20, 90), 2);
 }
 
 /* The surface foretells badly: what is remembered of that decides about the next batch. */
@@ -131,8 +127,7 @@ TEST(a_surface_that_is_half_believed_goes_on_the_same)
 {
     world(&here, 4, 2, 0);
     here.noise = 0.6;
-    const SearchConfig c = config(16, 110);
-    check_every_moment(&c, 8);
+    check_every_moment(config(16, 110), 8);
 }
 
 TEST(plain_children_and_a_world_where_everything_fails_go_on_the_same)
@@ -140,9 +135,9 @@ TEST(plain_children_and_a_world_where_everything_fails_go_on_the_same)
     world(&here, 6, 3, 0);
     SearchConfig c = config(20, 80);
     c.surrogate = SURROGATE_OFF;
-    check_every_moment(&c, 4);
+    check_every_moment(c, 4);
     here.fail_every = 1;
-    check_every_moment(&c, 1);
+    check_every_moment(c, 1);
 }
 
 TEST(the_number_of_threads_may_change_in_between)
@@ -222,7 +217,7 @@ TEST(a_search_that_converges_stops_at_the_same_place_wherever_it_was_resumed)
     world(&here, 3, 2, 0);
     SearchConfig c = config(20, 290);
     c.stop_after = 100;
-    check_every_moment(&c, 5);
+    check_every_moment(c, 5);
     run_noting(&here.problem, &c, NULL, &whole);
     assert_int_equal(whole.reason, STOP_CONVERGED);
     const SearchStart end = moment(&whole, whole.moments.n - 1);

@@ -447,6 +447,19 @@ TEST(a_folder_that_cannot_hold_the_run_is_named_and_a_fresh_run_takes_the_next)
     store_free(first);
 }
 
+TEST(a_database_that_is_removed_behind_the_search_is_put_back)
+{
+    RunStore *store;
+    OWNED(schema_free) Schema schema;
+    const Settings s = settings_of(PLAIN, "behind");
+    CHECK_OK(schema_of(&schema, &s, 0, &err), &err);
+    CHECK_OK(store_open(&store, there("behind"), 0, &err), &err);
+    CHECK_OK(work(store, &s, &schema, N_GENERATIONS - 1, &err), &err);
+    expect_shell("rm '%s'", there("behind/run.sqlite"));
+    assert_refused(store_close(store, "the end", 0, 1.0, NULL, &err), STATUS_IO, "what it held was put back");
+    CHECK_OK(session(there("behind"), &schema, N_GENERATIONS, &err), &err);
+}
+
 /* Designs for a run that has none yet; and generations that the store cannot keep. */
 TEST(a_generation_that_was_not_simulated_is_refused)
 {

@@ -554,8 +554,8 @@ static const struct {
     {"contact.v0_min_m_s", 1e-3, "the contact law is never given an approach speed below 1e-3 m/s"},
     {"contact.yield_stress_pa", 3.45e8, "contact_yields is of steel of 345 MPa; contact_pressure_pa says it of any"},
     {"contact.poisson", 0.3, "it is 0.3; contact.youngs_modulus_pa times 0.91/(1 - nu^2) is a contact of another nu"},
-    {"building.strength_degradation", 0, "building.degradation = strength=0.02 holds it"},
-    {"building.stiffness_degradation", 0, "building.degradation = stiffness=0.05 holds it"},
+    {"building.strength_degradation", 0, "it is strength= of building.degradation"},
+    {"building.stiffness_degradation", 0, "it is stiffness= of building.degradation"},
 };
 
 static size_t find_former(const char *key)

@@ -319,7 +319,7 @@ static Status flush(RunStore *store, Err *err)
 static Status flush_and_look(RunStore *store, Err *err)
 {
     Status status = flush(store, err);
-    if (status == STATUS_OK && (status = database_check_place(store->db, err)) != STATUS_OK)
+    if (status == STATUS_OK && store->is_ready && (status = database_check_place(store->db, err)) != STATUS_OK)
         lose(store, status);
     pthread_mutex_lock(&store->lock);
     store->status = status;
@@ -362,7 +362,7 @@ Status store_flush(RunStore *store, Err *err)
     pthread_mutex_unlock(&store->lock);
     if (had_thread)
         pthread_join(store->committing, NULL);
-    return flush(store, err);
+    return flush_and_look(store, err);
 }
 
 /* -- a session ----------------------------------------------------------------------------------------------------- */
