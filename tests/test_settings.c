@@ -492,8 +492,7 @@ TEST(a_key_of_an_earlier_version_is_passed_over_where_a_run_has_it_and_whole_num
     CHECK_OK(settings_parse(&s, "run.sqlite", "[contact]\npoisson = 0.3\n[building]\nstrength_degradation = 0\n", &err),
              &err);
     FOR_EACH (const char *, other, "[contact]\npoisson = 0.2\n", "[building]\nstiffness_degradation = 0.1\n")
-        assert_refused(settings_parse(&s, "run.sqlite", *other, &err), STATUS_BAD_DATA,
-                       "is no setting any more: it is");
+        assert_refused(settings_parse(&s, "run.sqlite", *other, &err), STATUS_BAD_DATA, "any more: it is");
     assert_refused(settings_set(&s, "search.asynchronous=on", &err), STATUS_BAD_DATA,
                    "is no setting any more: every search looks ahead");
     CHECK_OK(settings_set(&s, "search.max_evals=1000000", &err), &err);
