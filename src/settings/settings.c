@@ -58,7 +58,7 @@ typedef char OptionText[OPTION_TEXT_MAX];
 #define TEXT(field, standard_, ...) OPTION(KIND_TEXT, field, OptionText, standard_, __VA_ARGS__)
 /* clang-format on */
 
-/* In the order of PriceOptions, RepairOptions, UncertainOptions. */
+/* In the order of the fields of RepairOptions, DegradationOptions, PriceOptions, UncertainOptions. */
 enum { SHARES_MAX = 7 };
 static const char REPAIR_WORDS[] = "structure|drift_sensitive|acceleration_sensitive";
 static const char DEGRADATION_WORDS[] = "strength|stiffness";

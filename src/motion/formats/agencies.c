@@ -40,7 +40,7 @@ typedef struct Format {
     int text_lines, number_lines;    /* of the header; -1: "with N text lines" */
     int integers;                    /* it ends before a line of integers */
     int width, pairs;                /* pairs: of time and acceleration; without `more` digitized from film */
-    const char *parting;             /* of names; NULL: samples stand row by row */
+    const char *separator;           /* of names; NULL: samples stand row by row */
     const char *peak_of;             /* what stands before the peak of the channel %s */
     int one_word;                    /* the name is the first word of its value */
     MotionUnit unit;                 /* by definition */
@@ -154,7 +154,7 @@ static Status settle_steps(const Format *f, const Lines *l, Header *h, int k, Er
     dt = isnan(dt) ? duration / count : dt;
     if (!(dt > 0 && dt <= MOTION_STEP_MAX_S))
         return fail_word(f, l, STEP, RATE, err);
-    if (!f->parting && !(count >= 2 && count <= 1e8))
+    if (!f->separator && !(count >= 2 && count <= 1e8))
         return fail_word(f, l, COUNT, DURATION, err);
     const double rounded = duration == floor(duration); /* "approx   70 secs" */
     if (duration > 0 && fabs(duration - count * dt) > 2 * dt + 0.02 * duration + rounded)
@@ -260,7 +260,7 @@ static Status read_columns(const Format *f, Record *r, Lines *l, Header *h, Err 
                             l->path, l->number, n, width);
     }
     for (const char *p = names->from; p <= names->to;) {
-        const Cell name = cell_next(&p, names->to, f->parting);
+        const Cell name = cell_next(&p, names->to, f->separator);
         Channel *c;
         if (name.from == name.to)
             continue;
@@ -308,7 +308,7 @@ static Status read_channel(const Format *f, Record *r, Lines *l, Err *err)
     lines_next_filled(l);
     TRY(read_header(f, l, &h, err));
     TRY(check_type(&h.at[TYPE], err));
-    if (f->parting)
+    if (f->separator)
         return read_columns(f, r, l, &h, err);
     TRY(record_channel(r, l, &c, err));
 
@@ -617,15 +617,16 @@ static const Format FORMATS[] = {
                {UNIT, "UNITS:"},
                {PEAK, "PGA_CM/S^2:"},
                {TYPE, "DATA_TYPE:"}}},
-    {"jma", .begins = "SITE CODE", .parting = ",", .words = {{RATE, "SAMPLING RATE"}, {UNIT, "UNIT"}}},
-    {"cwb", .begins = "#Earthquake Information", .parting = " ;", .peak_of = "#AmplitudeMAX. %s:",
+    {"jma", .begins = "SITE CODE", .separator = ",", .words = {{RATE, "SAMPLING RATE"}, {UNIT, "UNIT"}}},
+    {"cwb", .begins = "#Earthquake Information", .separator = " ;", .peak_of = "#AmplitudeMAX. %s:",
      .words = {{RATE, "#SampleRate(Hz)"},
                {DURATION, "#RecordLength(sec)"},
                {UNIT, "#AmplitudeUnit"},
                {NAMES, "#DataSequence:"}}},
-    {"afad", .begins = "STRONG GROUND MOTION RECORDS OF T", .parting = " ", .peak_of = "(%s)", .unit = UNIT_CM_S2,
+    {"afad", .begins = "STRONG GROUND MOTION RECORDS OF T", .separator = " ", .peak_of = "(%s)", .unit = UNIT_CM_S2,
      .words = {{COUNT, "NUMBER OF DATA|:"}, {STEP, "SAMPLING INTERVAL|:"}}},
-    {"unam", .begins = "ARCHIVO ESTANDAR DE ACELERACION", .within = 12, .ends = "DATOS DE ACELERACION:", .parting = "/",
+    {"unam", .begins = "ARCHIVO ESTANDAR DE ACELERACION", .within = 12,
+     .ends = "DATOS DE ACELERACION:", .separator = "/",
      .words = {{NAMES, "ORIENTACION C1|:"},
                {STEP, "INTERVALO DE MUESTREO, C1|:"},
                {UNIT, "UNIDADES DE LOS DATOS|:"},
