@@ -24,7 +24,7 @@ typedef struct {
     size_t record;
     const double *x;
     Tried all, set;                /* by all effects, by the set at hand */
-    Measured finer[LADDER_SCENES]; /* by all with more steps, where they are among the effects */
+    Measured finer[LADDER_SCENES]; /* by all and the effect that all do not have, is_finer */
 } Case;
 
 typedef struct {
@@ -40,6 +40,7 @@ typedef struct {
     size_t n_structures;              /* as built, by all effects */
     size_t n_each, n_copies;          /* of the design without an effect, and by a set */
     double variance[LADDER_MEASURES]; /* relative, of structures as built; summed over the cases */
+    double whole_s;                   /* sim.duration_s as it is given */
     double X[DESIGNS * DESIGN_VARIABLES_MAX];
     Case *at; /* (n_cases) */
 } Choosing;
@@ -81,11 +82,16 @@ static Status open_effects(Choosing *c, Err *err)
     }
     problem_close(&p);
     TRY(status);
+    if (c->form == LADDER_BRIEF && (c->whole_s == 0 || strong_s < c->whole_s))
+        c->s.sim.duration_s = strong_s;
     TRY(ladder_effects(&c->s, strong_s, c->form, c->l, &c->all, err));
     for (size_t i = 0; i < c->l->n && c->form == LADDER_OPEN; i++) {
         LadderEffect *e = &c->l->effect[i];
-        if (strcmp(e->key, "sim.duration_s") == 0)
+        if (strcmp(e->key, "sim.duration_s") == 0) {
             e->is_set |= c->judged & ADDED_UP || !(strong_s < shortest);
+            e->is_finer = !e->is_set;
+            TRY(settings_put(&c->all, e->key, e->is_finer ? e->without : e->with, err));
+        }
         e->is_kept = e->is_set;
         if (e->is_set)
             memcpy(e->without, e->with, sizeof e->without);
@@ -99,6 +105,7 @@ static Status begin(Choosing **out, const Settings *s, Ladder *l, Err *err)
     TRY_ROOM(c, 1, "the choice of a model", err);
     *out = c;
     c->s = *s;
+    c->whole_s = s->sim.duration_s;
     c->l = l;
     TRY(settings_put(&c->s, "search.objectives", "j1_m, drift_ratio, j3_g", err)); /* LADDER_MEASURE */
     return settings_put(&c->s, "search.limits", "none", err);
@@ -186,6 +193,9 @@ static Status simulate_cases(Choosing *c, const Settings *with, int is_all, Err 
         Tried *t = is_all ? &c->at[i].all : &c->at[i].set;
         take_copies(t, c->n_copies);
         t->scene[BARE] = *bare[c->at[i].record];
+        for (int j = 0; j < LADDER_SCENES && i == 0 && !is_all; j++)
+            for (int m = 0; m < LADDER_MEASURES; m++)
+                c->l->set[j][m] = t->scene[j].outcome == RUN_OK ? t->scene[j].value[LADDER_MEASURE[m]] : NAN;
     }
     free(task);
     return status;
@@ -211,8 +221,6 @@ static Status try_set(Choosing *c, int *is_enough, Err *err)
             for (int m = 0; m < LADDER_MEASURES; m++) {
                 const double by = ladder_change(&k->set.scene[j], &whole[j], m);
                 l->off[j][m] = fabs(by) <= fabs(l->off[j][m]) ? l->off[j][m] : by;
-                if (i == 0)
-                    l->set[j][m] = k->set.scene[j].outcome == RUN_OK ? k->set.scene[j].value[LADDER_MEASURE[m]] : NAN;
             }
     }
     *is_enough = ladder_largest(l, l->off, &scene) <= 1;
@@ -406,9 +414,14 @@ static Status climb(Choosing *c, const double x[], Err *err)
     if (c->n_cases == 0)
         return bad_data(err, "%s", why.text);
     TRY(settle(c, err));
-    if (c->form == LADDER_BRIEF) /* one simulation tells no time: other processes disturb */
-        c->l->all_s = c->l->set_s = NAN;
-    return STATUS_OK;
+    if (c->form != LADDER_BRIEF)
+        return STATUS_OK;
+
+    /* The values of the set are those of the whole record; one simulation tells no time: other processes disturb. */
+    c->l->all_s = c->l->set_s = NAN;
+    c->s.sim.duration_s = c->whole_s;
+    TRY(ladder_put_set(c->l, &c->s, err));
+    return simulate_cases(c, &c->s, 0, err);
 }
 
 Status ladder_find(const Settings *s, const double x[], LadderForm form, Ladder *out, Err *err)
@@ -444,9 +457,11 @@ static Status list_cases(Choosing *c, size_t n, size_t n_var, const double X[], 
 {
     c->all = c->s;
     c->n_copies = 1;
-    for (size_t i = 0; i < c->l->n; i++)
+    for (size_t i = 0; i < c->l->n; i++) {
+        c->l->effect[i].is_finer = 0;
         if (!c->l->effect[i].is_set)
             TRY(settings_put(&c->all, c->l->effect[i].key, c->l->effect[i].with, err));
+    }
     TRY_ROOM(c->at, n * c->n_records, "designs", err);
     for (size_t i = 0; i < n * c->n_records && 3 * LADDER_SCENES * (i + 1) <= c->most; i++)
         c->at[c->n_cases++] = (Case){.record = i % c->n_records, .x = X + i / c->n_records * n_var};

@@ -557,16 +557,18 @@ static Status run_once(SimWorker *w, SceneKind kind, const Design *d, SimResult 
 }
 
 /* Simulations until the walls that buckle bend as their largest stress lets them, within WALLS_OFF of each share: first
- * whole, then by that stress, then by the mean of both logarithms, so that it settles where a stiffer core has more. */
+ * whole, then the secant's step in the logarithms of each storey: what is left, over what is assumed, falls with the
+ * assumed share, at first to a power of WALLS_POWER; between -1 and 0, so that it settles where a stiffer core has
+ * more. */
 enum { WALLS_MAX = 16 };
-static const double WALLS_OFF = 0.01;
+static const double WALLS_OFF = 0.01, WALLS_POWER = -0.4;
 
 Status sim_run_built(SimWorker *w, SceneKind kind, const Design *d, SimResult *result, Err *err)
 {
     const PriceOptions *price = &w->scene->options.design.prices;
     const double start = clock_seconds();
     const int has_walls = w->options->core.wall == WALL_EFFECTIVE && SCENES[kind].has & HAS_CORE;
-    double *share = w->own_options.core.wall_share;
+    double *share = w->own_options.core.wall_share, assumed[FLOORS_MAX], found[FLOORS_MAX]; /* logarithms */
     w->is_joined = (SCENES[kind].has & IS_JOINED) != 0;
     if (has_walls)
         memset(share, 0, sizeof w->own_options.core.wall_share);
@@ -574,9 +576,13 @@ Status sim_run_built(SimWorker *w, SceneKind kind, const Design *d, SimResult *r
         TRY(run_once(w, kind, d, result, err));
         if (result->outcome != RUN_OK || !(result->forces.core_wall_share_off > WALLS_OFF))
             break;
-        for (int s = 0; s < result->n_floors && has_walls && pass + 1 < WALLS_MAX; s++)
-            share[s] =
-                share[s] > 0 ? sqrt(share[s] * result->forces.core_wall_share[s]) : result->forces.core_wall_share[s];
+        for (int s = 0; s < result->n_floors && has_walls && pass + 1 < WALLS_MAX; s++) {
+            const double x = share[s] > 0 ? log(share[s]) : 0, left = log(result->forces.core_wall_share[s]);
+            const double power = pass > 0 && x != assumed[s] ? (left - found[s]) / (x - assumed[s]) : WALLS_POWER;
+            assumed[s] = x;
+            found[s] = left;
+            share[s] = exp(x + (left - x) / (1 - fmin(fmax(power, -1), 0)));
+        }
     }
     TRY(complete(w, result, err));
     result->mcore_kg = kind == SCENE_NO_CORE ? 0 : w->core.mass_kg;
