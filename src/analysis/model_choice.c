@@ -215,7 +215,8 @@ static Status try_set(Choosing *c, int *is_enough, Err *err)
     for (size_t i = 0; i < c->n_cases; i++) {
         const Case *k = &c->at[i];
         const Measured *whole = last->is_finer && last->is_kept ? k->finer : k->all.scene;
-        l->all_s += k->all.least_s / (double)c->n_cases;
+        const int is_whole = c->form != LADDER_OPEN || !(k->finer[0].seconds > 0); /* else to the record's end */
+        l->all_s += (is_whole ? k->all.least_s : k->finer[0].seconds) / (double)c->n_cases;
         l->set_s += k->set.least_s / (double)c->n_cases;
         for (int j = 0; j < LADDER_SCENES; j++)
             for (int m = 0; m < LADDER_MEASURES; m++) {
