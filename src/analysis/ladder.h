@@ -48,7 +48,7 @@ typedef struct {
     int decided_in;         /* the scene that has it */
     double cost_s;          /* what it adds to a simulation; NAN: not known */
     int is_needed, is_kept; /* by itself; in the set */
-    int is_finer;           /* the steps, an open weak end: the model with all has the other value */
+    int is_finer;           /* the steps: the model with all has the other value */
 } LadderEffect;
 
 typedef struct {
@@ -69,8 +69,7 @@ static inline int ladder_says(const Ladder *l, size_t i)
 
 /* LADDER_BRIEF: without the steps, on the strong part of the record but for the values by the set, and every effect is
  * left out once, so that no costs are known (NAN). LADDER_OPEN: a study's choice (analysis/model_choice.h): without the
- * steps, what the settings give stays, be it the default, and where the weak end is open the other changes are found
- * without it. */
+ * steps, and what the settings give stays, be it the default. */
 typedef enum { LADDER_WHOLE, LADDER_BRIEF, LADDER_OPEN } LadderForm;
 
 /* Of the design x. */

@@ -24,7 +24,7 @@ typedef struct {
     size_t record;
     const double *x;
     Tried all, set;                /* by all effects, by the set at hand */
-    Measured finer[LADDER_SCENES]; /* by all and the effect that all do not have, is_finer */
+    Measured finer[LADDER_SCENES]; /* by all with more steps, where they are among the effects */
 } Case;
 
 typedef struct {
@@ -87,11 +87,8 @@ static Status open_effects(Choosing *c, Err *err)
     TRY(ladder_effects(&c->s, strong_s, c->form, c->l, &c->all, err));
     for (size_t i = 0; i < c->l->n && c->form == LADDER_OPEN; i++) {
         LadderEffect *e = &c->l->effect[i];
-        if (strcmp(e->key, "sim.duration_s") == 0) {
+        if (strcmp(e->key, "sim.duration_s") == 0)
             e->is_set |= c->judged & ADDED_UP || !(strong_s < shortest);
-            e->is_finer = !e->is_set;
-            TRY(settings_put(&c->all, e->key, e->is_finer ? e->without : e->with, err));
-        }
         e->is_kept = e->is_set;
         if (e->is_set)
             memcpy(e->without, e->with, sizeof e->without);
@@ -215,8 +212,7 @@ static Status try_set(Choosing *c, int *is_enough, Err *err)
     for (size_t i = 0; i < c->n_cases; i++) {
         const Case *k = &c->at[i];
         const Measured *whole = last->is_finer && last->is_kept ? k->finer : k->all.scene;
-        const int is_whole = c->form != LADDER_OPEN || !(k->finer[0].seconds > 0); /* else to the record's end */
-        l->all_s += (is_whole ? k->all.least_s : k->finer[0].seconds) / (double)c->n_cases;
+        l->all_s += k->all.least_s / (double)c->n_cases;
         l->set_s += k->set.least_s / (double)c->n_cases;
         for (int j = 0; j < LADDER_SCENES; j++)
             for (int m = 0; m < LADDER_MEASURES; m++) {
@@ -458,11 +454,9 @@ static Status list_cases(Choosing *c, size_t n, size_t n_var, const double X[], 
 {
     c->all = c->s;
     c->n_copies = 1;
-    for (size_t i = 0; i < c->l->n; i++) {
-        c->l->effect[i].is_finer = 0;
+    for (size_t i = 0; i < c->l->n; i++)
         if (!c->l->effect[i].is_set)
             TRY(settings_put(&c->all, c->l->effect[i].key, c->l->effect[i].with, err));
-    }
     TRY_ROOM(c->at, n * c->n_records, "designs", err);
     for (size_t i = 0; i < n * c->n_records && 3 * LADDER_SCENES * (i + 1) <= c->most; i++)
         c->at[c->n_cases++] = (Case){.record = i % c->n_records, .x = X + i / c->n_records * n_var};
