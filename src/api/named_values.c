@@ -1,5 +1,8 @@
 #include "api/named_values.h"
 
+#include "base/carve.h"
+#include "base/stat.h"
+
 typedef struct {
     char name[48];
     size_t rows, columns;
@@ -34,12 +37,9 @@ static NamedValue *add(imtet_result *r, const char *name)
         return NULL;
     if (r->n == r->room) {
         const size_t room = 2 * r->room + 32;
-        NamedValue *wider = realloc(r->value, room * sizeof *wider);
-        if (!wider) {
-            r->lacks_memory = 1;
+        r->value = widened(r->value, room, sizeof *r->value, &r->lacks_memory);
+        if (r->lacks_memory)
             return NULL;
-        }
-        r->value = wider;
         r->room = room;
     }
     NamedValue *v = &r->value[r->n++];
@@ -63,8 +63,8 @@ double *result_table(imtet_result *r, const char *name, size_t rows, size_t colu
 void result_numbers(imtet_result *r, const char *name, size_t n, const double numbers[])
 {
     double *own = result_table(r, name, n, 1);
-    if (own && n > 0)
-        memcpy(own, numbers, n * sizeof *own);
+    if (own)
+        copy_values(n, numbers, own);
 }
 
 void result_text(imtet_result *r, const char *name, const char *text)

@@ -2,6 +2,8 @@
 
 #include "api/named_values.h"
 #include "base/linalg.h"
+#include "base/stat.h"
+#include "base/text.h"
 #include "evaluate/device.h"
 #include "motion/motion_scale.h"
 #include "settings/settings.h"
@@ -114,8 +116,7 @@ static Status check_question(Question *q, const SimOptions *o, const DesignSpace
         return misused(err, "kind is NULL");
     for (SceneKind k = 0; k < N_SCENES; k++)
         keys[k] = SCENES[k].key;
-    for (q->kind = 0; q->kind < N_SCENES && strcmp(keys[q->kind], q->asked) != 0;)
-        q->kind++;
+    q->kind = (SceneKind)index_of_word(q->asked, keys, N_SCENES);
     if (q->kind == N_SCENES)
         return fail_no_word(err, STATUS_USAGE, "kind", q->asked, "case", keys, N_SCENES);
     if (o->engine != ENGINE_FAST && (SCENES[q->kind].has & IS_JOINED || q->is_history))
@@ -163,9 +164,9 @@ enum { VARIABLES, OBJECTIVES, SENSES };
 static Status add_names(const Question *q, const char *what, int list, size_t n, Err *err)
 {
     const MeasureOrder *order = tower_measures(q->tower);
-    char name[TABLE_NAME_MAX], *names, *end;
-    TRY_ROOM(names, n * TABLE_NAME_MAX + 1, "names", err);
-    end = names;
+    const size_t size = n * TABLE_NAME_MAX + 1;
+    char name[TABLE_NAME_MAX], *names;
+    TRY_ROOM(names, size, "names", err);
     for (size_t k = 0; k < n; k++) {
         if (list == VARIABLES)
             design_variable_name(tower_design(q->tower), (int)k, name);
@@ -174,7 +175,7 @@ static Status add_names(const Question *q, const char *what, int list, size_t n,
                      list == OBJECTIVES                 ? measures_name(order, order->of[k])
                      : measure(order->of[k])->sense > 0 ? "min"
                                                         : "max");
-        end += sprintf(end, k ? ",%s" : "%s", name);
+        text_join(names, size, ",", "%s", name);
     }
     result_text(q->result, what, names);
     free(names);
@@ -235,7 +236,7 @@ static Status simulate(Question *q, Err *err)
         const size_t n = result_part(&s, SCENES[q->kind].has, part, values, &rows);
         double *own = n > 0 ? result_table(q->result, part->name, rows > 1 ? rows : n, rows > 1 ? n : 1) : NULL;
         if (own)
-            memcpy(own, values, rows * n * sizeof *own);
+            copy_values(rows * n, values, own);
     }
     result_text(q->result, "outcome", outcome_word((Outcome)s.outcome));
     result_text(q->result, "reason", s.reason);
@@ -255,7 +256,7 @@ static size_t add_columns(imtet_result *r, const Track *t, const char *name, siz
 {
     double *own = result_table(r, name, t->n, n);
     for (size_t i = 0; own && i < t->n; i++)
-        memcpy(own + i * n, t->rows + i * t->width + first, n * sizeof *own);
+        copy_values(n, t->rows + i * t->width + first, own + i * n);
     return first + n;
 }
 

@@ -5,6 +5,8 @@
 #include "api/search_config.h"
 #include "base/clock.h"
 #include "base/linalg.h"
+#include "base/stat.h"
+#include "base/text.h"
 #include "evaluate/limits.h"
 #include "evaluate/tasks.h"
 #include "moga/archive.h"
@@ -25,7 +27,7 @@ Status handle_add(imtet_search *s, const double x[], Err *err)
         s->room = room;
     }
     TRY(evaluation_table_add(&s->table, &row, err));
-    memcpy(row->x, x, s->table.n_var * sizeof *x);
+    copy_values(s->table.n_var, x, row->x);
     row->id = (long)s->table.n;
     s->design[s->table.n - 1] = (AskedDesign){0};
     return STATUS_OK;
@@ -176,11 +178,9 @@ static Status settings_of(const imtet_search_options *o, Settings *s, Err *err)
     if (o->constraints > CONSTRAINTS_MAX)
         return bad_data(err, "constraints: %zu are more than %d", o->constraints, CONSTRAINTS_MAX);
     s->problem.constraints = (long)o->constraints;
-    for (size_t i = 0, k; o->settings && o->settings[i]; i++) {
+    for (size_t i = 0; o->settings && o->settings[i]; i++) {
         snprintf(key, sizeof key, "%.*s", (int)strcspn(o->settings[i], "="), o->settings[i]);
-        for (k = 0; k < N_OF(KEYS) && strcmp(key, KEYS[k]) != 0;)
-            k++;
-        if (k == N_OF(KEYS))
+        if (index_of_word(key, KEYS, N_OF(KEYS)) == N_OF(KEYS))
             return fail_no_word(err, STATUS_BAD_DATA, "settings", key, "setting of a search that is asked and told",
                                 KEYS, N_OF(KEYS));
     }
@@ -258,8 +258,7 @@ void imtet_search_free(imtet_search **search)
 
 /* -- calls on one -------------------------------------------------------------------------------------------------- */
 
-/* Every call on a search begins by this and ends by leave: one thread at a time, in the process that made it. Where it
- * fails there is nothing to leave. */
+/* One thread at a time, in the process that made it. */
 static int enter(imtet_search *s, Err *err, imtet_error *error)
 {
     if (!s)
@@ -272,6 +271,12 @@ static int enter(imtet_search *s, Err *err, imtet_error *error)
     api_status(err->code, err, error);
     return 0;
 }
+
+/* Every call on a search begins by this, which declares err, and ends by leave; where it fails the call returns. */
+#define ENTER(search, err, error)                                                                                      \
+    Err err = {0};                                                                                                     \
+    if (!enter(search, &(err), error))                                                                                 \
+    return (imtet_status)(err).code
 
 static imtet_status leave(imtet_search *s, Status status, const Err *err, imtet_error *error)
 {
@@ -299,7 +304,7 @@ static Status ask(imtet_search *s, size_t n, long ids[], double X[], size_t *fou
             continue;
         s->design[s->next].place = DESIGN_OUT;
         ids[*found] = (long)s->next + 1;
-        memcpy(X + *found * n_var, s->table.row[s->next].x, n_var * sizeof *X);
+        copy_values(n_var, s->table.row[s->next].x, X + *found * n_var);
         ++*found;
     }
     return STATUS_OK;
@@ -307,11 +312,10 @@ static Status ask(imtet_search *s, size_t n, long ids[], double X[], size_t *fou
 
 imtet_status imtet_search_ask(imtet_search *search, size_t n, long ids[], double X[], size_t *found, imtet_error *error)
 {
-    Err err = {0};
     if (found)
         *found = 0;
-    return enter(search, &err, error) ? leave(search, ask(search, n, ids, X, found, &err), &err, error)
-                                      : (imtet_status)err.code;
+    ENTER(search, err, error);
+    return leave(search, ask(search, n, ids, X, found, &err), &err, error);
 }
 
 /* The answers of one call. */
@@ -370,9 +374,7 @@ imtet_status imtet_search_tell(imtet_search *search, size_t n, const long ids[],
 {
     const Answers answers = {n, ids, F, G, failed};
     size_t n_checked = 0;
-    Err err = {0};
-    if (!enter(search, &err, error))
-        return (imtet_status)err.code;
+    ENTER(search, err, error);
     Status status = n == 0 || ids ? STATUS_OK : misused(&err, "imtet_search_tell: ids is NULL");
     while (status == STATUS_OK && n_checked < n)
         status = check_answer(search, &answers, n_checked++, &err);
@@ -388,9 +390,7 @@ imtet_status imtet_search_tell(imtet_search *search, size_t n, const long ids[],
 
 imtet_status imtet_search_look(imtet_search *search, imtet_search_state *state, imtet_error *error)
 {
-    Err err = {0};
-    if (!enter(search, &err, error))
-        return (imtet_status)err.code;
+    ENTER(search, err, error);
     const imtet_search *s = search;
     const Status status = state && state->size == sizeof *state
                               ? advance(search, &err)
@@ -437,13 +437,11 @@ static Status fill_archive(const imtet_search *s, Archive *archive, Err *err)
 imtet_status imtet_search_designs(imtet_search *search, imtet_set which, size_t max, long ids[], double X[], double F[],
                                   double G[], size_t *found, imtet_error *error)
 {
-    Err err = {0};
     Archive archive = {0};
     Status status = STATUS_OK;
     if (found)
         *found = 0;
-    if (!enter(search, &err, error))
-        return (imtet_status)err.code;
+    ENTER(search, err, error);
     if (!found || (which != IMTET_FRONT && which != IMTET_TOLD))
         status = misused(&err, "imtet_search_designs: %s", found ? "`which` is no set" : "found is NULL");
     else if (which == IMTET_FRONT)
@@ -458,8 +456,8 @@ imtet_status imtet_search_designs(imtet_search *search, imtet_set which, size_t 
         if (n < max && ids)
             ids[n] = e->id;
         for (size_t k = 0; n < max && k < N_OF(size); k++)
-            if (to[k] && size[k] > 0)
-                memcpy(to[k] + n * size[k], from[k], size[k] * sizeof *to[k]);
+            if (to[k])
+                copy_values(size[k], from[k], to[k] + n * size[k]);
     }
     pareto_archive_free(&archive);
     return leave(search, status, &err, error);
@@ -467,9 +465,7 @@ imtet_status imtet_search_designs(imtet_search *search, imtet_set which, size_t 
 
 imtet_status imtet_search_save(imtet_search *search, const char *path, imtet_error *error)
 {
-    Err err = {0};
-    if (!enter(search, &err, error))
-        return (imtet_status)err.code;
+    ENTER(search, err, error);
     return leave(search, path ? saved_write(search, path, &err) : misused(&err, "imtet_search_save: path is NULL"),
                  &err, error);
 }

@@ -1,4 +1,4 @@
-/* base/carve.h -- one allocation, laid out once.
+/* base/carve.h -- one allocation, laid out once; arrays that grow.
  *
  * A layout function names each array. The first pass (base NULL) only counts, the second hands out slices:
  *
@@ -57,6 +57,14 @@ static inline void *carve_object(void (*layout)(void *object, Carve *c), void *p
     if (object)
         layout(memcpy(object, plain, size), &(Carve){object, own});
     return object;
+}
+
+/* Memory of realloc with room for n of `size` bytes; where that is refused it stays as it is, and *lacks is set. */
+static inline void *widened(void *array, size_t n, size_t size, int *lacks)
+{
+    void *wider = realloc(array, n * size + 1);
+    *lacks |= !wider;
+    return wider ? wider : array;
 }
 
 /* A wider slice that begins with the n_old elements of the old one. */

@@ -25,6 +25,9 @@ static inline int is_blank(char c)
 __attribute__((format(printf, 4, 5))) void text_join(char text[], size_t size, const char *separator,
                                                      const char *format, ...);
 
+/* Where the word stands in list[0..n); n: nowhere. */
+size_t index_of_word(const char *word, const char *const list[], size_t n);
+
 FILE *text_open(char **text, size_t *length);
 int text_close(FILE *stream);
 

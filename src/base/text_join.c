@@ -14,3 +14,11 @@ void text_join(char text[], size_t size, const char *separator, const char *form
         vsnprintf(text + n, size - n, format, values);
     va_end(values);
 }
+
+size_t index_of_word(const char *word, const char *const list[], size_t n)
+{
+    size_t i = 0;
+    while (i < n && strcmp(list[i], word) != 0)
+        i++;
+    return i;
+}

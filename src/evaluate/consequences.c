@@ -4,6 +4,7 @@
 #include <stdio.h>
 
 #include "base/figure.h"
+#include "base/text.h"
 
 const struct DamagePart DAMAGE_PARTS[N_PARTS] = {
     {"structure", "steel frame", {0.006, 0.012, 0.03, 0.08}, 0.4, {0.004, 0.019, 0.096, 0.192}},
@@ -66,7 +67,6 @@ double damage_loss_of_neighbour(const SimResult *r)
 const char *damage_words(const SimResult *r, char text[DAMAGE_WORDS_MAX])
 {
     char figure[FIGURE_MAX];
-    int used = 0;
     text[0] = 0;
     for (DamagedPart p = 0; p < N_PARTS && r->outcome == RUN_OK; p++) {
         const int is_drift = p != PART_ACCELERATION;
@@ -74,12 +74,12 @@ const char *damage_words(const SimResult *r, char text[DAMAGE_WORDS_MAX])
         const int state = damage_state(p, is_drift ? r->drift_ratio_max : worst);
         const char *unit = is_drift ? " %" : " g";
         figure_text(worst, NAN, NAN, "", figure);
-        used += snprintf(text + used, DAMAGE_WORDS_MAX - (size_t)used, "%s%s: %s%s (%s%s)",
-                         p ? ", " : "damage by Hazus: ", DAMAGE_PARTS[p].words, state == DAMAGE_STATES ? "beyond " : "",
-                         damage_word(state), figure, unit);
+        text_join(text, DAMAGE_WORDS_MAX, ", ", "%s%s: %s%s (%s%s)",
+                  p ? "" : "damage by Hazus: ", DAMAGE_PARTS[p].words, state == DAMAGE_STATES ? "beyond " : "",
+                  damage_word(state), figure, unit);
     }
     figure_text(100 * damage_loss(r), NAN, NAN, "", figure);
     if (r->outcome == RUN_OK)
-        snprintf(text + used, DAMAGE_WORDS_MAX - (size_t)used, "; repair some %s %% of replacement", figure);
+        text_join(text, DAMAGE_WORDS_MAX, "; ", "repair some %s %% of replacement", figure);
     return text;
 }

@@ -1,5 +1,7 @@
 #include "evaluate/device.h"
 
+#include "base/stat.h"
+
 /* Points of the first grid, for which SUITE records are enough; how many finer ones. */
 enum { GRID_HZ = 13, GRID_DAMPING = 5, GRID_LINKS = 15, FINER = 4, SUITE = 4 };
 enum { POINTS_MAX = GRID_HZ * GRID_DAMPING + 1 };
@@ -43,9 +45,7 @@ static double combine(const Tuning *t, size_t n, const Measured of[], double J[3
     const ReplicatePlan plan = tower_plan(t->tower, n);
     ReplicateSummary sum;
     replicates_summarise(&plan, of, sizeof *of, 0, &sum);
-    J[0] = sum.mean[MEASURE_J1];
-    J[1] = sum.mean[MEASURE_J2];
-    J[2] = sum.mean[MEASURE_J3];
+    copy_values(3, &sum.mean[MEASURE_J1], J);
     return J[0] / t->no_core[0] + J[1] / t->no_core[1] + J[2] / t->no_core[2];
 }
 

@@ -1,5 +1,8 @@
 #include "evaluate/evaluation.h"
 
+#include "base/carve.h"
+#include "base/stat.h"
+#include "base/text.h"
 #include "base/visible.h"
 
 static const char *const OUTCOME_WORDS[] = {
@@ -14,14 +17,6 @@ static const char *const KIND_WORDS[] = {
 #undef X
 };
 
-static size_t index_of(const char *word, size_t n, const char *const words[])
-{
-    size_t i = 0;
-    while (i < n && strcmp(words[i], word) != 0)
-        i++;
-    return i;
-}
-
 const char *outcome_word(Outcome outcome)
 {
     return OUTCOME_WORDS[outcome];
@@ -29,7 +24,7 @@ const char *outcome_word(Outcome outcome)
 
 Outcome outcome_of_word(const char *word)
 {
-    return (Outcome)index_of(word, OUTCOME_COUNT, OUTCOME_WORDS);
+    return (Outcome)index_of_word(word, OUTCOME_WORDS, OUTCOME_COUNT);
 }
 
 const char *kind_word(EvaluationKind kind)
@@ -39,7 +34,7 @@ const char *kind_word(EvaluationKind kind)
 
 EvaluationKind kind_of_word(const char *word)
 {
-    return (EvaluationKind)index_of(word, KIND_UNFINISHED, KIND_WORDS);
+    return (EvaluationKind)index_of_word(word, KIND_WORDS, KIND_UNFINISHED);
 }
 
 void evaluation_set_outcome(Evaluation *e, Outcome outcome, const char *reason)
@@ -68,14 +63,6 @@ static void point_row(EvaluationTable *t, size_t i)
         t->row[i].sd = NULL;
 }
 
-/* Room for n of them; the old array, and *lacks, without memory. */
-static void *widen(void *array, size_t n, size_t size, int *lacks)
-{
-    void *wider = realloc(array, n * size + 1);
-    *lacks |= !wider;
-    return wider ? wider : array;
-}
-
 void evaluation_forget(Evaluation *e, size_t n_obj, size_t n_extra)
 {
     const Evaluation own = *e;
@@ -95,8 +82,8 @@ Status evaluation_table_add(EvaluationTable *t, Evaluation **row, Err *err)
     if (t->n == t->n_max) { /* of large arrays the system moves the pages, and copies nothing */
         const size_t n_max = t->n_max > 0 ? 2 * t->n_max : 32;
         int lacks = 0;
-        t->row = widen(t->row, n_max, sizeof *t->row, &lacks);
-#define X(array, width) t->array = widen(t->array, n_max * t->width, sizeof *t->array, &lacks);
+        t->row = widened(t->row, n_max, sizeof *t->row, &lacks);
+#define X(array, width) t->array = widened(t->array, n_max * t->width, sizeof *t->array, &lacks);
         EVALUATION_ARRAYS(X)
 #undef X
         for (size_t i = 0; i < t->n; i++)
@@ -140,8 +127,8 @@ Status evaluation_table_append(EvaluationTable *t, const Evaluation *from, Err *
     }
 #define X(array, width)                                                                                                \
     e->array = own.array;                                                                                              \
-    if (from->array && e->array && t->width > 0)                                                                       \
-        memcpy(e->array, from->array, t->width * sizeof *e->array);
+    if (from->array && e->array)                                                                                       \
+        copy_values(t->width, from->array, e->array);
     EVALUATION_ARRAYS(X)
 #undef X
     return STATUS_OK;

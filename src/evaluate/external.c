@@ -5,6 +5,7 @@
 
 #include "base/clock.h"
 #include "base/list.h"
+#include "base/stat.h"
 #include "base/visible.h"
 #include "evaluate/kinds.h"
 #include "evaluate/pool.h"
@@ -178,13 +179,13 @@ static void combine(const Problem *p, size_t n, const void *parts, Evaluation *e
     const ExternalAnswer *a = parts;
     char reason[REASON_MAX];
     evaluation_set_outcome(evaluation, a->outcome, a->reason);
-    memcpy(evaluation->f, a->f, p->n_obj * sizeof *a->f);
+    copy_values(p->n_obj, a->f, evaluation->f);
     if (a->outcome == OUTCOME_OK && e->n_con >= 0 && a->n_con != (size_t)e->n_con) {
         snprintf(reason, sizeof reason, "g has %zu values and not %ld as in the first answer of the run", a->n_con,
                  e->n_con);
         evaluation_set_outcome(evaluation, OUTCOME_NOT_FINITE, reason);
-    } else if (a->outcome == OUTCOME_OK && a->n_con > 0) {
-        memcpy(evaluation->extra, a->f + p->n_obj, a->n_con * sizeof *a->f);
+    } else if (a->outcome == OUTCOME_OK) {
+        copy_values(a->n_con, a->f + p->n_obj, evaluation->extra);
     }
     evaluation->seconds = a->seconds;
     evaluation->replicates = 1;

@@ -3,8 +3,14 @@
 #include <jansson.h>
 
 #include "base/list.h"
+#include "base/text.h"
 
 static const char CHOICE[] = "choice:", SOLD[] = "list:";
+
+static int is_of(const char *item, const char *kind)
+{
+    return strncmp(item, kind, strlen(kind)) == 0;
+}
 
 /* The item of variable j. */
 static int item_of(const char *list, size_t j, char item[LIST_MAX])
@@ -24,7 +30,7 @@ int kinds_are_real(const char *list)
 /* Word i of "choice:a|b|c" or "list:1|2|3", whichever `kind` is; 0: there is none, or it is too long. */
 static int word_at(const char *item, const char *kind, size_t i, char word[KIND_WORD_MAX])
 {
-    const char *at = strncmp(item, kind, strlen(kind)) == 0 ? item + strlen(kind) : NULL;
+    const char *at = is_of(item, kind) ? item + strlen(kind) : NULL;
     for (; at && i > 0; i--)
         at = strchr(at, '|') ? strchr(at, '|') + 1 : NULL;
     const size_t n = at ? strcspn(at, "|") : 0;
@@ -59,7 +65,7 @@ int kinds_have(const char *list, size_t j, double x)
     for (size_t i = 0; word_at(item, SOLD, i, word); i++)
         if (strtod(word, NULL) == x)
             return 1;
-    return strncmp(item, SOLD, strlen(SOLD)) != 0 && (strcmp(item, "int") != 0 || x == floor(x));
+    return !is_of(item, SOLD) && (strcmp(item, "int") != 0 || x == floor(x));
 }
 
 /* UTF-8 that fits JSON, a cell of a CSV file and people: no quote, control character, blank at an end, or formula. */
@@ -120,16 +126,16 @@ Status kinds_read(const char *list, size_t n_var, VariableKind kind[], double bo
     *steps = NULL;
     if (n != 1 && n != n_var)
         return bad_data(err, "problem.kinds: %zu kinds for %zu variables", n, n_var);
-    for (size_t j = 0, k = 0; j < n_var; j++, k = 0) {
+    for (size_t j = 0; j < n_var; j++) {
         if (!item_of(list, j, item))
             return bad_data(err, "problem.kinds: kind %zu is missing", j + 1);
-        if (strncmp(item, CHOICE, sizeof CHOICE - 1) == 0) {
+        if (is_of(item, CHOICE)) {
             kind[j] = VARIABLE_CHOICE;
             lower[j] = 0.0;
             TRY(read_choice(item, &upper[j], err));
             continue;
         }
-        if (strncmp(item, SOLD, strlen(SOLD)) == 0) {
+        if (is_of(item, SOLD)) {
             if (!*steps)
                 TRY_ROOM(*steps, n_var * (1 + LIST_MAX / 2 * sizeof *sold / sizeof **steps), "lists of numbers", err);
             sold = (double *)(void *)(*steps + n_var) + j * (LIST_MAX / 2);
@@ -139,10 +145,8 @@ Status kinds_read(const char *list, size_t n_var, VariableKind kind[], double bo
             upper[j] = sold[(*steps)[j].n - 1];
             continue;
         }
-        while (k < N_OF(WORDS) && strcmp(item, WORDS[k]) != 0)
-            k++;
-        kind[j] = (VariableKind)k;
-        if (k == N_OF(WORDS))
+        kind[j] = (VariableKind)index_of_word(item, WORDS, N_OF(WORDS));
+        if (kind[j] == N_OF(WORDS))
             return bad_data(err, "problem.kinds: '%s' is none of real, log, int, list:NUMBER|NUMBER, choice:WORD|WORD",
                             item);
         if (kind[j] == VARIABLE_LOG && !(lower[j] > 0.0))

@@ -1,6 +1,7 @@
 #include "evaluate/order.h"
 
 #include "base/clock.h"
+#include "base/stat.h"
 
 /* Where x begins. */
 static double *numbers_of(Order *o)
@@ -12,8 +13,8 @@ size_t order_write(Order *to, const Worker *w, size_t n_var)
 {
     to->n = w->n;
     memcpy(to + 1, w->task, w->n * sizeof *w->task);
-    for (size_t i = 0; i < w->n && n_var > 0; i++)
-        memcpy(numbers_of(to) + i * n_var, w->task[i].x, n_var * sizeof(double));
+    for (size_t i = 0; i < w->n; i++)
+        copy_values(n_var, w->task[i].x, numbers_of(to) + i * n_var);
     return order_bytes(w->n, n_var);
 }
 

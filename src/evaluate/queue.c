@@ -4,6 +4,7 @@
 #include <pthread.h>
 
 #include "base/carve.h"
+#include "base/stat.h"
 #include "evaluate/cluster.h"
 #include "evaluate/pool.h"
 
@@ -222,7 +223,7 @@ Status queue_ask(Queue *q, const Asked *asked, Err *err)
 
     /* 2. The design, of which some parts may be there. */
     if (asked->x)
-        memcpy(s->e.x, asked->x, p->n_var * sizeof *asked->x);
+        copy_values(p->n_var, asked->x, s->e.x);
     s->e.kind = asked->kind;
     s->e.id = q->last_id = asked->id > 0 ? asked->id : q->last_id + 1;
     s->next = NULL;
@@ -296,9 +297,9 @@ Status queue_evaluate(Queue *q, size_t n, const double X[], const size_t repeat[
     for (size_t i = 0; i < n; i++) {
         TRY(queue_next(q, &done, err));
         ok[i] = done.evaluation->outcome == OUTCOME_OK;
-        memcpy(F + i * p->n_obj, done.f, p->n_obj * sizeof *F);
-        if (G && p->n_con > 0)
-            memcpy(G + i * p->n_con, done.g, p->n_con * sizeof *G);
+        copy_values(p->n_obj, done.f, F + i * p->n_obj);
+        if (G)
+            copy_values(p->n_con, done.g, G + i * p->n_con);
     }
     return STATUS_OK;
 }

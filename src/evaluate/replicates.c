@@ -23,7 +23,7 @@ void replicate_gaps(uint32_t seed, size_t k, double tolerance_m, const DesignSpa
     const size_t n = s->n_floors;
     replicate_design(seed, 0, k, tolerance_m, n, d->gap[0]);
     if (s->gap_sides == GAPS_BOTH)
-        memcpy(d->gap[1], d->gap[0], n * sizeof *d->gap[0]);
+        copy_values(n, d->gap[0], d->gap[1]);
     else
         replicate_design(seed, 1, k, tolerance_m, n, d->gap[1]);
 }
@@ -76,7 +76,7 @@ AsBuilt replicate_as_built(uint32_t seed, size_t k, const UncertainOptions *u)
 static const Measured *simulation(const ReplicatePlan *plan, const void *parts, size_t size, size_t i)
 {
     const size_t part = i % plan->n_replicates * plan->n_records + i / plan->n_replicates;
-    return (const void *)((const char *)parts + part * size);
+    return measured_part(parts, size, part);
 }
 
 double robust_pooled(const ReplicatePlan *plan, double sense, size_t n, double v[], double *sd)
@@ -107,7 +107,7 @@ static void combine_measure(const ReplicatePlan *plan, int k, const double value
     const double sense = measure(k)->sense;
     double v[PARTS_MAX];
     for (size_t r = 0; r < n_records; r++)
-        memcpy(v + r * n, values + (drawn ? drawn[r] : r) * n, n * sizeof *v);
+        copy_values(n, values + (drawn ? drawn[r] : r) * n, v + r * n);
 
     /* 1. Chances are means of all simulations; other rules know no records either, but for the mean and the worst. */
     if (k >= MEASURES_LISTED) {

@@ -78,5 +78,11 @@ enum { BOOTSTRAP = 200 };
 void replicates_summarise(const ReplicatePlan *plan, const void *parts, size_t size, int wants_errors,
                           ReplicateSummary *out);
 
+/* The Measured numbers of part i. */
+static inline const Measured *measured_part(const void *parts, size_t size, size_t i)
+{
+    return (const void *)((const char *)parts + i * size);
+}
+
 /* v (n), sorted by this call: mean_plus_sd, quantile or cvar, sense +1: large values are bad. sd NAN: one value. */
 double robust_pooled(const ReplicatePlan *plan, double sense, size_t n, double v[], double *sd);

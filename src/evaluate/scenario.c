@@ -1,6 +1,7 @@
 #include "evaluate/scenario.h"
-#include "motion/motion_scale.h"
 
+#include "base/stat.h"
+#include "motion/motion_scale.h"
 #include "sim/fast/fast.h"
 
 Status motion_scale_copy(Motion *out, const Motion *read, const MotionOptions *record, Err *err)
@@ -12,9 +13,8 @@ Status motion_scale_copy(Motion *out, const Motion *read, const MotionOptions *r
     Status status =
         out->accel && (!rows || out->force_rows) ? STATUS_OK : fail_memory(err, read->n, "samples of a motion");
     if (status == STATUS_OK) {
-        memcpy(out->accel, read->accel, read->n * sizeof *out->accel);
-        if (rows)
-            memcpy(out->force_rows, read->force_rows, rows * sizeof *out->force_rows);
+        copy_values(read->n, read->accel, out->accel);
+        copy_values(rows, read->force_rows, out->force_rows);
         status = motion_scale(out, record, err);
     }
     if (status != STATUS_OK)

@@ -241,8 +241,7 @@ static void combine(const Problem *p, size_t n, const void *parts, Evaluation *e
     const ReplicatePlan plan = tower_plan(t, n);
     ReplicateSummary sum;
     replicates_summarise(&plan, parts, p->part_size, 0, &sum);
-    const Measured *shown = (const void *)((const char *)parts + sum.shown * p->part_size);
-    evaluation_set_outcome(e, sum.outcome, shown->reason);
+    evaluation_set_outcome(e, sum.outcome, measured_part(parts, p->part_size, sum.shown)->reason);
     for (int i = 0; i < t->order.n_obj; i++) {
         e->f[i] = sum.mean[t->order.of[i]];
         e->sd[i] = sum.sd[t->order.of[i]];
@@ -632,10 +631,9 @@ Status tower_run(const Problem *p, size_t n, const SimTask tasks[], SimTell *tel
             if (task->summary)
                 *task->summary = sum;
             if (task->result)
-                *task->result =
-                    ((const FullResult *)(const void *)((const char *)done.parts + sum.shown * own.part_size))->result;
+                *task->result = ((const FullResult *)measured_part(done.parts, own.part_size, sum.shown))->result;
             for (size_t k = 0; task->parts && k < n_parts; k++)
-                memcpy(&task->parts[k], (const char *)done.parts + k * own.part_size, sizeof *task->parts);
+                task->parts[k] = *measured_part(done.parts, own.part_size, k);
             if (tell)
                 tell(i, user);
         }
