@@ -163,9 +163,8 @@ static Status add_design(Archive *a, size_t row, Err *err)
     a->usable[row] = a->ok[row];
     a->violation[row] = a->ok[row] ? violation_of(k, a->H + row * k) : INFINITY;
     if (a->has_means) {
-        memcpy(a->F + row * m, a->Y + row * m, m * sizeof *a->F);
-        if (k > 0)
-            memcpy(a->G + row * k, a->H + row * k, k * sizeof *a->G);
+        copy_values(m, a->Y + row * m, a->F + row * m);
+        copy_values(k, a->H + row * k, a->G + row * k);
         memset(a->S + row * m, 0, m * sizeof *a->S);
         set_errors(a, row);
     }
@@ -223,11 +222,10 @@ Status pareto_archive_insert(Archive *a, const double x[], const double f[], con
 
     /* 2. The row as it is. */
     const size_t row = a->n++;
-    memcpy(a->X + row * a->n_var, x, a->n_var * sizeof *x);
-    memcpy(a->Y + row * a->n_obj, f, a->n_obj * sizeof *f);
-    if (a->n_con > 0)
-        memcpy(a->H + row * a->n_con, g, a->n_con * sizeof *g);
-    a->ok[row] = ok && all_finite(a->n_obj, f) && (a->n_con == 0 || all_finite(a->n_con, g));
+    copy_values(a->n_var, x, a->X + row * a->n_var);
+    copy_values(a->n_obj, f, a->Y + row * a->n_obj);
+    copy_values(a->n_con, g, a->H + row * a->n_con);
+    a->ok[row] = ok && all_finite(a->n_obj, f) && all_finite(a->n_con, g);
     a->n_failed += !a->ok[row];
     a->kind[row] = (unsigned char)kind;
     a->generation[row] = generation;
@@ -249,11 +247,6 @@ Status pareto_archive_insert(Archive *a, const double x[], const double f[], con
     a->n_usable += a->usable[design];
     a->n_usable -= was_usable;
     return STATUS_OK;
-}
-
-void pareto_archive_predicted(Archive *a, size_t row)
-{
-    a->violation[row] = violation_of(a->n_con, a->H + row * a->n_con);
 }
 
 void pareto_archive_drop(Archive *a, size_t row)

@@ -4,7 +4,7 @@
  *   design    the row of its first evaluation, which has the mean of all its replicates (F, G, violation), the standard
  *             error of F (moga/noise.h; 0 without replicates)
  *   screened  a design of which only the cheap level is known (KIND_SCREENED): never on the front; F is what the whole
- *             evaluation is predicted to be (pareto_archive_predicted). Evaluated in full, its new row is the design,
+ *             evaluation is predicted to be (moga/screening.h). Evaluated in full, its new row is the design,
  *             and the row before is none any more (replicates 0)
  *   usable    a design all of whose evaluations succeeded with finite numbers
  *   on_front  usable, every constraint holds, no design of the archive dominates it surely (base/dominance.h)
@@ -66,9 +66,6 @@ void pareto_archive_free(Archive *a);
 /* Adds a row; g is not read where n_con is 0. */
 Status pareto_archive_insert(Archive *a, const double x[], const double f[], const double g[], int ok,
                              EvaluationKind kind, size_t generation, Err *err);
-
-/* Y and H of a design that is screened are now what is expected of the whole evaluation. */
-void pareto_archive_predicted(Archive *a, size_t row);
 
 /* The design is not used any more. */
 void pareto_archive_drop(Archive *a, size_t row);

@@ -1,5 +1,6 @@
 #include "moga/state.h"
 
+#include "base/stat.h"
 #include "moga/replication.h"
 #include "moga/variation.h"
 
@@ -39,7 +40,7 @@ static void renew_population(Search *s, size_t first_new)
         else
             population_add(pool, a->X + row * a->n_var);
         const size_t last = pool->n - 1;
-        memcpy(pool->F + last * a->n_obj, a->F + row * a->n_obj, a->n_obj * sizeof *a->F);
+        copy_values(a->n_obj, a->F + row * a->n_obj, pool->F + last * a->n_obj);
         pool->violation[last] = a->violation[row];
         pool->row[last] = row;
     }
@@ -206,14 +207,13 @@ Status generation_enter(Search *s, Err *err)
     while (c->pending.n > s->allowed) {
         const Place *place = pending_at(&c->pending, 0);
         const Question *q = &place->q;
-        const double *x = pending_x(&c->pending, 0), *f = pending_f(&c->pending, 0), *g = f + n_obj;
-        const int by = q->criterion, is_good = by < INFILL_KINDS && place->ok && violation_of(n_con, g) == 0.0;
+        const double *x = pending_x(&c->pending, 0), *f = pending_f(&c->pending, 0);
+        const int by = q->criterion, is_good = by < INFILL_KINDS && place->ok && violation_of(n_con, f + n_obj) == 0.0;
         if (by < INFILL_KINDS)
             results.designs[by] += 1.0;
         for (int k = 0; k < INFILL_KINDS && is_good; k++)
             results.gain[k][by] += infill_gain(s->criteria.select[k], f);
-        TRY(screening_take(&s->screening, c, &(Answer){x, f, g, q->kind, place->parts}, err));
-        TRY(pareto_archive_insert(&c->archive, x, f, g, place->ok, q->kind, q->generation, err));
+        TRY(screening_enter(&s->screening, c, &(Answer){x, f, place->ok, q->kind, q->generation, place->parts}, err));
         pending_enter(&c->pending);
     }
     credit_learn(&s->criteria.credit, &results);

@@ -14,7 +14,6 @@ struct Levels {
     Rbf *rest;     /* d; NULL: 0 */
     double *U, *D; /* (n, n_dim) (n, n_out) coordinates, what the lines leave */
     double *u, *d; /* (n_dim) (n_out) of a design */
-    void *store;
 };
 
 static void layout(void *levels, Carve *c)
@@ -35,15 +34,15 @@ static double on_line(const Line *line, double cheap)
 Status levels_fit(Levels **out, const Problem *p, int is_biased, size_t n, size_t n_out, const double *const x[],
                   const double cheap[], const double whole[], Err *err)
 {
-    TRY_ROOM(*out, 1, "a prediction from the cheap level", err);
-    Levels *q = *out;
-    *q = (Levels){.problem = p, .n = n, .n_out = n_out, .n_dim = surrogate_dimension(p)};
-    q->store = carve_all(layout, q);
-    Status status = q->store ? STATUS_OK : fail_memory(err, n, "pairs of levels");
-    int has_rest = status == STATUS_OK && is_biased && q->n_dim <= RBF_DIM_MAX;
+    Levels plain = {.problem = p, .n = n, .n_out = n_out, .n_dim = surrogate_dimension(p)};
+    Levels *q = *out = carve_object(layout, &plain, sizeof plain);
+    if (!q)
+        return fail_memory(err, n, "pairs of levels");
+    Status status = STATUS_OK;
+    int has_rest = is_biased && q->n_dim <= RBF_DIM_MAX;
 
     /* 1. The lines. Where squares overflow, or the cheap level is constant beside the whole evaluation: the mean. */
-    for (size_t k = 0; status == STATUS_OK && k < n_out; k++) {
+    for (size_t k = 0; k < n_out; k++) {
         Line *line = &q->line[k];
         double xx = 0.0, xy = 0.0;
         for (size_t i = k; i < n * n_out; i += n_out) {
@@ -80,10 +79,8 @@ Status levels_fit(Levels **out, const Problem *p, int is_biased, size_t n, size_
 
 void levels_free(Levels *q)
 {
-    if (q) {
+    if (q)
         free(q->rest);
-        free(q->store);
-    }
     free(q);
 }
 

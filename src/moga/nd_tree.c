@@ -1,6 +1,8 @@
 #include "moga/nd_tree.h"
 
+#include "base/carve.h"
 #include "base/dominance.h"
+#include "base/stat.h"
 
 /* Points of a leaf before it is split: 20 in the paper, which costs a tenth more here; children of a node: as many as
  * objectives and one, but no more than this. Jaszkiewicz and Lust, section V. */
@@ -31,8 +33,8 @@ static Node *make_leaf(const NdTree *t, const double f[])
     const size_t m = t->n_obj;
     Node *q = calloc(1, sizeof *q + 2 * m * sizeof *f);
     if (q) {
-        memcpy(q->bounds, f, m * sizeof *f);
-        memcpy(q->bounds + m, f, m * sizeof *f);
+        copy_values(m, f, q->bounds);
+        copy_values(m, f, q->bounds + m);
     }
     return q;
 }
@@ -51,12 +53,9 @@ static void note_removed(NdTree *t, size_t row)
 {
     if (t->n_removed == t->n_removed_max) {
         const size_t wider = t->n_removed_max > 0 ? 2 * t->n_removed_max : LEAF_MAX + 4;
-        size_t *more = realloc(t->removed, wider * sizeof *more);
-        if (!more) {
-            t->lacks_memory = 1;
+        t->removed = widened(t->removed, wider, sizeof *t->removed, &t->lacks_memory);
+        if (t->lacks_memory)
             return;
-        }
-        t->removed = more;
         t->n_removed_max = wider;
     }
     t->removed[t->n_removed++] = row;

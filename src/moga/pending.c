@@ -2,6 +2,9 @@
 
 #include <float.h>
 
+#include "base/carve.h"
+#include "base/stat.h"
+
 static size_t width(const Pending *p)
 {
     return p->n_var + p->n_obj + p->n_con;
@@ -42,20 +45,19 @@ Status pending_add(Pending *p, const Question *q, Err *err)
     if (p->head + p->n == p->n_max) {
         if (p->head <= p->n_max / 2) {
             const size_t n_max = p->n_max > 0 ? 2 * p->n_max : 64;
-            Place *place = realloc(p->place, n_max * sizeof *place);
-            p->place = place ? place : p->place;
-            double *number = realloc(p->number, n_max * width(p) * sizeof *number);
-            p->number = number ? number : p->number;
-            if (!place || !number)
+            int lacks = 0;
+            p->place = widened(p->place, n_max, sizeof *p->place, &lacks);
+            p->number = widened(p->number, n_max * width(p), sizeof *p->number, &lacks);
+            if (lacks)
                 return fail_memory(err, n_max, "designs under way");
             p->n_max = n_max;
         }
         memmove(p->place, p->place + p->head, p->n * sizeof *p->place);
-        memmove(p->number, p->number + p->head * width(p), p->n * width(p) * sizeof *p->number);
+        copy_values(p->n * width(p), p->number + p->head * width(p), p->number);
         p->head = 0;
     }
     p->place[p->head + p->n] = (Place){.q = *q};
-    memcpy(numbers(p, p->n), q->x, p->n_var * sizeof *q->x);
+    copy_values(p->n_var, q->x, numbers(p, p->n));
     p->n++;
     p->n_of_kind[q->kind]++;
     return STATUS_OK;
@@ -118,7 +120,7 @@ void pending_pack(Pending *p, Pack *pack)
         Question q = {.x = x};
         if (!pack->reading) {
             q = pending_at(p, i)->q;
-            memcpy(x, pending_x(p, i), p->n_var * sizeof *x);
+            copy_values(p->n_var, pending_x(p, i), x);
         }
         size_t kind = q.kind, criterion = q.criterion;
         pack_numbers(pack, x, p->n_var, -DBL_MAX, DBL_MAX);

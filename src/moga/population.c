@@ -3,6 +3,7 @@
 #include <float.h>
 
 #include "base/carve.h"
+#include "base/stat.h"
 
 static void layout(void *population, Carve *c)
 {
@@ -32,7 +33,7 @@ void population_free(Population *p)
 size_t population_add(Population *p, const double x[])
 {
     const size_t i = p->n++;
-    memcpy(p->X + i * p->n_var, x, p->n_var * sizeof *x);
+    copy_values(p->n_var, x, p->X + i * p->n_var);
     memset(p->F + i * p->n_obj, 0, p->n_obj * sizeof *p->F);
     memset(p->error + i * p->n_obj, 0, p->n_obj * sizeof *p->error);
     p->violation[i] = p->uncertainty[i] = 0.0;
@@ -43,9 +44,10 @@ size_t population_add(Population *p, const double x[])
 
 static void copy(Population *to, size_t i, const Population *from, size_t j)
 {
-    memmove(to->X + i * to->n_var, from->X + j * from->n_var, to->n_var * sizeof *to->X);
-    memmove(to->F + i * to->n_obj, from->F + j * from->n_obj, to->n_obj * sizeof *to->F);
-    memmove(to->error + i * to->n_obj, from->error + j * from->n_obj, to->n_obj * sizeof *to->error);
+    const size_t n_var = to->n_var, n_obj = to->n_obj;
+    copy_values(n_var, from->X + j * n_var, to->X + i * n_var);
+    copy_values(n_obj, from->F + j * n_obj, to->F + i * n_obj);
+    copy_values(n_obj, from->error + j * n_obj, to->error + i * n_obj);
     to->violation[i] = from->violation[j];
     to->uncertainty[i] = from->uncertainty[j];
     to->chance[i] = from->chance[j];

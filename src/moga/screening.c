@@ -15,6 +15,7 @@
  * Threads  one */
 #include "moga/screening.h"
 
+#include "base/carve.h"
 #include "base/hypervolume.h"
 #include "base/stat.h"
 #include "moga/normalisation.h"
@@ -126,43 +127,41 @@ static size_t find(const Screening *q, const Common *c, const double x[])
     return low < q->n && q->design[low].row == row ? low : q->n;
 }
 
-Status screening_take(Screening *q, const Common *c, const Answer *answer, Err *err)
+/* One more screened design, the next row of the archive. */
+static Status add_screened(Screening *q, const Common *c, const Answer *answer, Err *err)
 {
-    const Problem *p = c->problem;
-    const size_t size = p->n_cheap * p->part_size;
-
-    /* 1. The whole evaluation of a design that was screened; of another one there is nothing to be kept. */
-    if (answer->kind != KIND_SCREENED) {
-        const size_t i = find(q, c, answer->x);
-        if (i == q->n)
-            return STATUS_OK;
-        q->design[i].finished = c->archive.n;
-        q->n_finished++;
-        free(q->design[i].parts);
-        q->design[i].parts = NULL;
-        return STATUS_OK;
-    }
-
-    /* 2. A screened design. */
+    const size_t size = c->problem->n_cheap * c->problem->part_size;
     if (q->n == q->n_max) {
         const size_t n_max = q->n_max > 0 ? 2 * q->n_max : 128;
-        Screened *design = realloc(q->design, n_max * sizeof *design);
-        q->design = design ? design : q->design;
-        double *y = realloc(q->y, n_max * q->n_out * sizeof *y);
-        q->y = y ? y : q->y;
-        if (!design || !y)
+        int lacks = 0;
+        q->design = widened(q->design, n_max, sizeof *q->design, &lacks);
+        q->y = widened(q->y, n_max * q->n_out, sizeof *q->y, &lacks);
+        if (lacks)
             return fail_memory(err, n_max, "screened designs");
         q->n_max = n_max;
     }
     Screened *d = &q->design[q->n];
-    double *y = q->y + q->n++ * q->n_out;
     *d = (Screened){c->archive.n, SIZE_MAX, answer->parts ? malloc(size) : NULL};
     if (d->parts)
         memcpy(d->parts, answer->parts, size);
-    memcpy(y, answer->f, p->n_obj * sizeof *y);
-    if (p->n_con > 0)
-        memcpy(y + p->n_obj, answer->g, p->n_con * sizeof *y);
+    copy_values(q->n_out, answer->f, q->y + q->n++ * q->n_out);
     return STATUS_OK;
+}
+
+/* What the screening keeps of it comes first: the whole evaluation of a design that was screened, or a screened one. */
+Status screening_enter(Screening *q, Common *c, const Answer *answer, Err *err)
+{
+    const size_t i = answer->kind == KIND_SCREENED ? q->n : find(q, c, answer->x);
+    if (answer->kind == KIND_SCREENED)
+        TRY(add_screened(q, c, answer, err));
+    else if (i < q->n) {
+        q->design[i].finished = c->archive.n;
+        q->n_finished++;
+        free(q->design[i].parts);
+        q->design[i].parts = NULL;
+    }
+    return pareto_archive_insert(&c->archive, answer->x, answer->f, answer->f + c->problem->n_obj, answer->ok,
+                                 answer->kind, answer->generation, err);
 }
 
 void screening_exchange(Screening *q, Archive *a)
@@ -242,11 +241,11 @@ static Status predict(Screening *q, Archive *a, Err *err)
         if (levels)
             levels_predict(levels, a->X + row * q->problem->n_var, cheap, y);
         else
-            memcpy(y, cheap, q->n_out * sizeof *y);
+            copy_values(q->n_out, cheap, y);
         for (size_t k = 0; k < q->n_out; k++)
             *output_of(a, row, k) = y[k];
         if (all_finite(q->n_out, y))
-            pareto_archive_predicted(a, row);
+            a->violation[row] = violation_of(a->n_con, a->H + row * a->n_con);
         else
             pareto_archive_drop(a, row);
     }

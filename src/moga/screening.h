@@ -1,6 +1,6 @@
 /* moga/screening.h -- most designs are evaluated by the cheap level of the problem alone; screening.c says how.
  *
- * Life cycle  screening_begin -> (screening_take, screening_update ...) ... -> screening_free
+ * Life cycle  screening_begin -> (screening_enter, screening_update ...) ... -> screening_free
  * Memory      grows with the screened designs
  * Threads     one */
 #pragma once
@@ -8,10 +8,12 @@
 #include "moga/batch.h"
 #include "moga/levels.h"
 
-/* An evaluation as it enters the archive: of its kind, minimised f and g. */
+/* An evaluation as it enters the archive. */
 typedef struct {
-    const double *x, *f, *g;
+    const double *x, *f; /* f: minimised, then g */
+    int ok;
     EvaluationKind kind;
+    size_t generation;
     const void *parts; /* of the cheap level; NULL: not known */
 } Answer;
 
@@ -46,8 +48,7 @@ int screening_is_spent(const Screening *q, const Common *c);
 /* New designs, n_max at most, that there is room for beside what the screened ones are finished with. */
 size_t screening_room(const Screening *q, const Common *c, size_t n_max);
 
-/* Before it enters the archive; minimised f and g; parts of the cheap level, NULL: not known. */
-Status screening_take(Screening *q, const Common *c, const Answer *answer, Err *err);
+Status screening_enter(Screening *q, Common *c, const Answer *answer, Err *err); /* into the archive */
 Status screening_update(Screening *q, Common *c, Err *err); /* after results: predictions, agreement, front */
 void screening_exchange(Screening *q, Archive *a); /* predictions in the archive for what was evaluated, and back */
 const void *screening_parts(const Screening *q, const Common *c, const double x[]); /* of the cheap level; NULL: none */

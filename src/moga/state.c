@@ -27,8 +27,7 @@ static void layout(void *search, Carve *c)
     CARVE(c, w->members, n_pool);
     CARVE(c, w->slices, b->size_max);
     CARVE(c, w->samples, b->size_max * n_var);
-    CARVE(c, w->f, p->n_obj);
-    CARVE(c, w->g, p->n_con);
+    CARVE(c, w->f, p->n_obj + p->n_con);
 }
 
 /* Rows of the archive that there is room for from the beginning, where so many are to come: what is not used yet is no
@@ -134,10 +133,10 @@ void state_pack(Search *s, Pack *p)
 static Status restore_row(const Evaluation *e, void *search, Err *err)
 {
     Search *s = search;
-    double *f = s->scratch.f, *g = s->scratch.g;
-    problem_judge(s->common.problem, e, f, g);
-    TRY(screening_take(&s->screening, &s->common, &(Answer){e->x, f, g, e->kind, NULL}, err));
-    return pareto_archive_insert(&s->common.archive, e->x, f, g, e->outcome == OUTCOME_OK, e->kind, e->generation, err);
+    double *f = s->scratch.f;
+    problem_judge(s->common.problem, e, f, f + s->common.problem->n_obj);
+    return screening_enter(&s->screening, &s->common,
+                           &(Answer){e->x, f, e->outcome == OUTCOME_OK, e->kind, e->generation, NULL}, err);
 }
 
 Status state_restore(Search *s, const SearchStart *start, Err *err)

@@ -14,7 +14,7 @@ typedef struct {
     size_t *members; /* (pool) 0, 1, ... */
     size_t *slices;  /* (batch.size_max) of the Latin hypercube */
     double *samples; /* (batch.size_max, n_var) of it */
-    double *f, *g;   /* (n_obj) (n_con) of a design restored */
+    double *f;       /* (n_obj + n_con) f, then g of a design restored */
 } Scratch;
 
 typedef struct Search Search; /* moga/search.h */

@@ -29,7 +29,6 @@ struct Surrogate {
     double *descent;        /* (predict_max + RBF_BLOCK, descent_length) */
     double *chance;         /* (predict_max) predictions of success */
     double *u, *f, *e;      /* (predict_max, n_dim) (predict_max, n_out) twice */
-    void *store;
 };
 
 static size_t descent_length(const Surrogate *s);
@@ -88,16 +87,16 @@ static void layout(void *surrogate, Carve *c)
 
 Status surrogate_create(Surrogate **out, const Problem *problem, size_t surrogate_max, size_t predict_max, Err *err)
 {
-    TRY_ROOM(*out, 1, "a surrogate", err);
-    Surrogate *s = *out;
-    s->problem = problem;
-    s->n_dim = surrogate_dimension(problem);
-    s->n_out = problem->n_obj + problem->n_con;
-    s->n_max = surrogate_max;
-    s->predict_max = predict_max;
-    s->store = carve_all(layout, s);
-    Status status = s->store ? STATUS_OK : fail_memory(err, predict_max, "predictions");
-    for (size_t d = 0, at = 0; status == STATUS_OK && d < problem->n_var; d++)
+    Surrogate plain = {.problem = problem,
+                       .n_dim = surrogate_dimension(problem),
+                       .n_out = problem->n_obj + problem->n_con,
+                       .n_max = surrogate_max,
+                       .predict_max = predict_max};
+    Surrogate *s = *out = carve_object(layout, &plain, sizeof plain);
+    if (!s)
+        return fail_memory(err, predict_max, "predictions");
+    Status status = STATUS_OK;
+    for (size_t d = 0, at = 0; d < problem->n_var; d++)
         for (const size_t end = at + n_coordinates(problem, d); at < end; at++)
             s->is_held[at] = problem_kind(problem, d) == VARIABLE_CHOICE;
     if (s->n_dim <= RBF_DIM_MAX) {
@@ -116,7 +115,6 @@ void surrogate_free(Surrogate *s)
     if (s) {
         free(s->rbf);
         free(s->success);
-        free(s->store);
     }
     free(s);
 }
@@ -129,13 +127,17 @@ static int compare_rows(const void *first, const void *second, void *distance)
     return d[a] != d[b] ? (d[a] > d[b] ? 1 : -1) : (a > b) - (a < b);
 }
 
+/* Output k of a design: an objective, or behind them a constraint. */
+static double output_of(const Archive *a, size_t row, size_t k)
+{
+    return k < a->n_obj ? a->F[row * a->n_obj + k] : a->G[row * a->n_con + k - a->n_obj];
+}
+
 static int is_centre(const Archive *a, size_t i)
 {
     int fits = a->usable[i];
-    for (size_t k = 0; fits && k < a->n_obj; k++)
-        fits = fabs(a->F[i * a->n_obj + k]) < VALUE_MAX;
-    for (size_t k = 0; fits && k < a->n_con; k++)
-        fits = fabs(a->G[i * a->n_con + k]) < VALUE_MAX;
+    for (size_t k = 0; fits && k < a->n_obj + a->n_con; k++)
+        fits = fabs(output_of(a, i, k)) < VALUE_MAX;
     return fits;
 }
 
@@ -231,18 +233,17 @@ Status surrogate_fit(Surrogate *s, const Archive *a, Infill *near, Err *err)
     for (size_t i = 0; i < s->n; i++) {
         const size_t row = a->scratch.row[i];
         surrogate_coordinates(s->problem, a->X + row * a->n_var, s->U + i * s->n_dim);
-        memcpy(s->F + i * s->n_out, a->F + row * a->n_obj, a->n_obj * sizeof *s->F);
-        memcpy(s->F + i * s->n_out + a->n_obj, a->G + row * a->n_con, a->n_con * sizeof *s->F);
-        for (size_t k = 0; k < s->n_out; k++)
+        for (size_t k = 0; k < s->n_out; k++) {
+            s->F[i * s->n_out + k] = output_of(a, row, k);
             s->noise[i * s->n_out + k] = 1.0 / (double)a->replicates[row];
+        }
     }
     for (size_t k = 0; k < s->n_out; k++) {
         double min = DBL_MAX, max = -DBL_MAX;
         for (size_t i = 0; i < a->n; i++) {
-            const double v = k < a->n_obj ? a->F[i * a->n_obj + k] : a->G[i * a->n_con + k - a->n_obj];
             if (is_centre(a, i)) {
-                min = fmin(min, v);
-                max = fmax(max, v);
+                min = fmin(min, output_of(a, i, k));
+                max = fmax(max, output_of(a, i, k));
             }
         }
         s->range[k] = max > min ? max - min : 1.0;
@@ -332,7 +333,7 @@ void surrogate_predict(Surrogate *s, Population *population, size_t first, int w
         }
         for (size_t k = 0; e && k < s->n_out; k++)
             worst = fmax(worst, e[k] / s->range[k]);
-        memcpy(population->F + i * p->n_obj, f, p->n_obj * sizeof *f);
+        copy_values(p->n_obj, f, population->F + i * p->n_obj);
         for (size_t k = 0; k < p->n_obj; k++)
             population->error[i * p->n_obj + k] = e ? e[k] : 0.0;
         population->violation[i] = violation_of(p->n_con, g) + fmax(SUCCESS_MIN - success, 0.0);
@@ -389,7 +390,7 @@ static void descend(const Surrogate *s, size_t n, const Infill *const near[], co
             if (step == 0 || violation < least_violation[p] || (violation == least_violation[p] && value < least[p])) {
                 least_violation[p] = violation;
                 least[p] = value;
-                memcpy(best, u, n_dim * sizeof *u);
+                copy_values(n_dim, u, best);
             }
             for (size_t d = 0; d < n_dim; d++) {
                 if (step == 0) {
@@ -402,7 +403,7 @@ static void descend(const Surrogate *s, size_t n, const Infill *const near[], co
         }
     }
     for (size_t p = 0; p < n; p++)
-        memcpy(U + p * n_dim, rest + p * (4 * n_dim + n_obj), n_dim * sizeof *U);
+        copy_values(n_dim, rest + p * (4 * n_dim + n_obj), U + p * n_dim);
 }
 
 void surrogate_descend(Surrogate *s, const Archive *a, Infill *const select[], size_t n_first, size_t n,
@@ -417,7 +418,7 @@ void surrogate_descend(Surrogate *s, const Archive *a, Infill *const select[], s
         double *U = s->descent + i * length, *x = X + i * p->n_var;
         for (size_t j = 0; j < count; j++) {
             near[j] = select[i + j < n_first ? INFILL_HYPERVOLUME : INFILL_PBI];
-            memcpy(x + j * p->n_var, a->X + infill_best(near[j], vectors[i + j]) * p->n_var, p->n_var * sizeof *x);
+            copy_values(p->n_var, a->X + infill_best(near[j], vectors[i + j]) * p->n_var, x + j * p->n_var);
             surrogate_coordinates(p, x + j * p->n_var, U + j * s->n_dim);
         }
         descend(s, count, near, vectors + i, U);
