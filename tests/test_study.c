@@ -177,7 +177,7 @@ TEST(a_run_that_is_killed_leaves_its_last_finished_generation)
     run(&s, "%s",
         SMALL_STUDY_OF(4000) "--threads 1 --out @/killed & n=0; "
                              "while ! grep -qs 'number.: 30,' @/killed/log.jsonl && [ $n -lt 1200 ]; do n=$((n+1)); "
-                             "sleep 0.05; done; "
+                             "sleep 0.05; done; sleep 0.5; " /* the store commits five times a second */
                              "kill -9 $! && ! wait $!");
     if (s.code != 0)
         fail_msg("exit %d, said: %s", s.code, s.err);

@@ -67,9 +67,9 @@ static inline int ladder_says(const Ladder *l, size_t i)
     return i == 0 || strcmp(l->effect[i].key, l->effect[i - 1].key) != 0 || l->effect[i - 1].is_kept;
 }
 
-/* LADDER_BRIEF: without the steps, on the strong part of the record but for the values by the set, and every effect is
- * left out once, so that no costs are known (NAN). LADDER_OPEN: a study's choice (analysis/model_choice.h): without the
- * steps, and what the settings give stays, be it the default. */
+/* LADDER_BRIEF: without the steps and the weak end, on the strong part of the record but for the values by the set;
+ * every effect is left out once, so that no costs are known (NAN). LADDER_OPEN: a study's choice
+ * (analysis/model_choice.h): without the steps, and what the settings give stays, be it the default. */
 typedef enum { LADDER_WHOLE, LADDER_BRIEF, LADDER_OPEN } LadderForm;
 
 /* Of the design x. */

@@ -82,7 +82,7 @@ static Status open_effects(Choosing *c, Err *err)
     }
     problem_close(&p);
     TRY(status);
-    if (c->form == LADDER_BRIEF && (c->whole_s == 0 || strong_s < c->whole_s))
+    if (c->form == LADDER_BRIEF && strong_s < (c->whole_s > 0 ? c->whole_s : shortest))
         c->s.sim.duration_s = strong_s;
     TRY(ladder_effects(&c->s, strong_s, c->form, c->l, &c->all, err));
     for (size_t i = 0; i < c->l->n && c->form == LADDER_OPEN; i++) {
@@ -411,12 +411,11 @@ static Status climb(Choosing *c, const double x[], Err *err)
     if (c->n_cases == 0)
         return bad_data(err, "%s", why.text);
     TRY(settle(c, err));
-    if (c->form != LADDER_BRIEF)
+    if (c->form == LADDER_BRIEF) /* one simulation tells no time: other processes disturb */
+        c->l->all_s = c->l->set_s = NAN;
+    if (c->s.sim.duration_s == c->whole_s)
         return STATUS_OK;
-
-    /* The values of the set are those of the whole record; one simulation tells no time: other processes disturb. */
-    c->l->all_s = c->l->set_s = NAN;
-    c->s.sim.duration_s = c->whole_s;
+    c->s.sim.duration_s = c->whole_s; /* of which the values by the set are */
     TRY(ladder_put_set(c->l, &c->s, err));
     return simulate_cases(c, &c->s, 0, err);
 }
