@@ -7,11 +7,6 @@
 
 static const char CHOICE[] = "choice:", SOLD[] = "list:";
 
-static int is_of(const char *item, const char *kind)
-{
-    return strncmp(item, kind, strlen(kind)) == 0;
-}
-
 /* The item of variable j. */
 static int item_of(const char *list, size_t j, char item[LIST_MAX])
 {
@@ -30,7 +25,7 @@ int kinds_are_real(const char *list)
 /* Word i of "choice:a|b|c" or "list:1|2|3", whichever `kind` is; 0: there is none, or it is too long. */
 static int word_at(const char *item, const char *kind, size_t i, char word[KIND_WORD_MAX])
 {
-    const char *at = is_of(item, kind) ? item + strlen(kind) : NULL;
+    const char *at = strncmp(item, kind, strlen(kind)) == 0 ? item + strlen(kind) : NULL;
     for (; at && i > 0; i--)
         at = strchr(at, '|') ? strchr(at, '|') + 1 : NULL;
     const size_t n = at ? strcspn(at, "|") : 0;
@@ -65,7 +60,7 @@ int kinds_have(const char *list, size_t j, double x)
     for (size_t i = 0; word_at(item, SOLD, i, word); i++)
         if (strtod(word, NULL) == x)
             return 1;
-    return !is_of(item, SOLD) && (strcmp(item, "int") != 0 || x == floor(x));
+    return strncmp(item, SOLD, strlen(SOLD)) != 0 && (strcmp(item, "int") != 0 || x == floor(x));
 }
 
 /* UTF-8 that fits JSON, a cell of a CSV file and people: no quote, control character, blank at an end, or formula. */
@@ -129,13 +124,13 @@ Status kinds_read(const char *list, size_t n_var, VariableKind kind[], double bo
     for (size_t j = 0; j < n_var; j++) {
         if (!item_of(list, j, item))
             return bad_data(err, "problem.kinds: kind %zu is missing", j + 1);
-        if (is_of(item, CHOICE)) {
+        if (strncmp(item, CHOICE, sizeof CHOICE - 1) == 0) {
             kind[j] = VARIABLE_CHOICE;
             lower[j] = 0.0;
             TRY(read_choice(item, &upper[j], err));
             continue;
         }
-        if (is_of(item, SOLD)) {
+        if (strncmp(item, SOLD, strlen(SOLD)) == 0) {
             if (!*steps)
                 TRY_ROOM(*steps, n_var * (1 + LIST_MAX / 2 * sizeof *sold / sizeof **steps), "lists of numbers", err);
             sold = (double *)(void *)(*steps + n_var) + j * (LIST_MAX / 2);

@@ -22,6 +22,7 @@
 #include "base/csv.h"
 #include "base/hash.h"
 #include "base/random.h"
+#include "base/text.h"
 #include "motion/synthetic.h"
 
 static const double DT_S = 0.02;
@@ -135,9 +136,7 @@ Status builtin_motion(Motion *m, const char *source, Err *err)
     static const char *const NAMES[] = {BUILTIN_MOTION_LIST(CHOICE_WORD) SUITE_SOURCE};
     char name[sizeof SUITE_SOURCE + 8];
     size_t of_suite = SUITE_MOTIONS; /* from 1; 0: it is none of the suite */
-    int k = 0;
-    while (k < N_MOTIONS && strcmp(source, NAMES[k]) != 0)
-        k++;
+    const int k = (int)index_of_word(source, NAMES, N_MOTIONS);
     do
         snprintf(name, sizeof name, SUITE_SOURCE "-%02zu", of_suite);
     while (strcmp(source, name) != 0 && --of_suite > 0);

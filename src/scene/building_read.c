@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include "base/linalg.h"
+#include "base/text.h"
 #include "scene/core_beam.h"
 #include "scene/sheets.h"
 
@@ -257,10 +258,7 @@ static const char *const FILES[KINDS] = {"nodes.csv", "storeys.csv", "K.csv", "M
 
 int building_reads(const char *name)
 {
-    int k = 0;
-    while (k < KINDS && strcmp(name, FILES[k]) != 0)
-        k++;
-    return k < KINDS || frame_reads(name);
+    return index_of_word(name, FILES, KINDS) < KINDS || frame_reads(name);
 }
 
 Status building_read(BuildingFiles *b, const BuildingOptions *o, Err *err)

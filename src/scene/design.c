@@ -1,6 +1,7 @@
 #include "scene/design.h"
 
 #include "base/list.h"
+#include "base/text.h"
 
 /* -- variables ----------------------------------------------------------------------------------------------------- */
 
@@ -49,11 +50,9 @@ static Status read_words(const Words *w, const char *list, int places[WORDS_MAX]
 {
     char word[64];
     for (*n = 0; *n < (int)list_count(list); ++*n) {
-        int k = 0;
         if (!list_item(list, *n, word, sizeof word))
             return bad_data(err, "%s: item %d is empty or too long", w->key, *n + 1);
-        while (k < w->n && strcmp(w->word[k], word) != 0)
-            k++;
+        const int k = (int)index_of_word(word, w->word, w->n);
         if (k == w->n)
             return fail_no_word(err, STATUS_BAD_DATA, w->key, word, w->noun, w->word, w->n);
         for (int i = 0; i < *n; i++)
