@@ -91,7 +91,8 @@ Status ladder_effects(const Settings *s, double strong_s, LadderForm form, Ladde
 {
     *l = (Ladder){0};
     *all = *s;
-    for (int kind = 0; kind < (form == LADDER_WHOLE ? KINDS : STEPS); kind++) {
+    const int n_kinds = form == LADDER_WHOLE ? KINDS : form == LADDER_BRIEF ? END : STEPS;
+    for (int kind = 0; kind < n_kinds; kind++) {
         LadderEffect *e = &l->effect[l->n];
         const int is_given = form == LADDER_OPEN && settings_gives(s, EFFECTS[kind].key);
         if (!is_there(all, kind, strong_s))
