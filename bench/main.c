@@ -4,6 +4,7 @@
 #include <cblas.h>
 #include <string.h>
 
+#include "base/text.h"
 #include "bench/schedule.h"
 #include "bench/search/factors.h"
 #include "bench/search/loop.h"
@@ -60,9 +61,7 @@ static Status choose(const char *list, const char *what, const char *const known
         const size_t length = strcspn(list, ",");
         char word[64];
         snprintf(word, sizeof word, "%.*s", (int)length, list);
-        int k = 0;
-        while (k < n && strcmp(word, known[k]) != 0)
-            k++;
+        const int k = (int)index_of_word(word, known, (size_t)n);
         if (k == n)
             return args_unknown(what, word, known, n, "`imtet-bench sweep --help`", err);
         *bits |= 1u << k;

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/carve.h"
 #include "base/random.h"
 #include "base/units.h"
 #include "scene/design.h"
@@ -268,19 +269,13 @@ static Status clear(Promise *p, long n_max, Err *err)
 {
     p->n = p->left_out = p->scenes = p->wider = 0;
     p->n_max = n_max;
-    for (int k = 0; k < N_PRESETS; k++) {
-        double *error = realloc(p->missed[k].error, (size_t)(N_ERRORS * n_max + 1) * sizeof *error);
-        if (!error)
-            return fail(err, STATUS_NO_MEMORY, "promise: no memory for %ld cases", n_max);
-        p->missed[k] = (Missed){.error = error};
-    }
-    for (int i = 0; i < N_ESTIMATED; i++) {
-        double *ratio = realloc(p->ratio[i], (size_t)n_max * sizeof *ratio);
-        if (!ratio)
-            return fail(err, STATUS_NO_MEMORY, "promise: no memory for %ld cases", n_max);
-        p->ratio[i] = ratio;
-    }
-    return STATUS_OK;
+    const size_t n = (size_t)n_max;
+    int lacks = 0;
+    for (int k = 0; k < N_PRESETS; k++)
+        p->missed[k] = (Missed){.error = widened(p->missed[k].error, N_ERRORS * n, sizeof(double), &lacks)};
+    for (int i = 0; i < N_ESTIMATED; i++)
+        p->ratio[i] = widened(p->ratio[i], n, sizeof *p->ratio[i], &lacks);
+    return lacks ? fail(err, STATUS_NO_MEMORY, "promise: no memory for %ld cases", n_max) : STATUS_OK;
 }
 
 /* ---- the table --------------------------------------------------------------------------------------------------- */

@@ -1,6 +1,7 @@
 #include "bench/textbook.h"
 
 #include "base/random.h"
+#include "base/text.h"
 #include "evaluate/kinds.h"
 
 void textbook_dtlz2(size_t n_var, size_t n_obj, const double x[], double f[])
@@ -156,11 +157,9 @@ static Status set_variables(Exercise *e, const char *kinds, Err *err)
 Status textbook_open(Problem *p, const TextbookOptions *o, Err *err)
 {
     const char *names[N_OF(PROBLEMS)];
-    size_t i = 0;
     for (size_t k = 0; k < N_OF(PROBLEMS); k++)
         names[k] = PROBLEMS[k].name;
-    while (i < N_OF(PROBLEMS) && strcmp(o->name, names[i]) != 0)
-        i++;
+    const size_t i = index_of_word(o->name, names, N_OF(PROBLEMS));
     if (i == N_OF(PROBLEMS))
         return fail_no_word(err, STATUS_USAGE, "problem", o->name, "problem", names, N_OF(PROBLEMS));
     if (o->n_var > TEXTBOOK_VAR_MAX || o->n_obj > TEXTBOOK_OBJ_MAX || o->n_obj < 2 || o->n_var < o->n_obj)

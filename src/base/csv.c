@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <sys/stat.h>
 
+#include "base/carve.h"
 #include "base/text.h"
 
 /* ---- files ------------------------------------------------------------------------------------------------------- */
@@ -220,13 +221,11 @@ static Status read_row(Reading *r, const char *from, const char *to, Err *err)
     const char *p = from;
     if (t->n_rows == r->rows) {
         const size_t rows = 2 * t->n_rows + 64, cells = rows * t->n_cols;
-        size_t *cell = realloc(t->cell, cells * sizeof *cell);
-        t->cell = cell ? cell : t->cell;
-        double *values = realloc(t->values, cells * sizeof *values);
-        t->values = values ? values : t->values;
-        int *line = realloc(t->line, rows * sizeof *line);
-        t->line = line ? line : t->line;
-        if (!cell || !values || !line)
+        int lacks = 0;
+        t->cell = widened(t->cell, cells, sizeof *t->cell, &lacks);
+        t->values = widened(t->values, cells, sizeof *t->values, &lacks);
+        t->line = widened(t->line, rows, sizeof *t->line, &lacks);
+        if (lacks)
             return fail_memory(err, rows, "rows");
         r->rows = rows;
     }

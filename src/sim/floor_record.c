@@ -1,5 +1,6 @@
 #include "sim/floor_record.h"
 
+#include "base/carve.h"
 #include "scene/building.h"
 
 struct FloorRecord {
@@ -39,11 +40,9 @@ double *floor_record_add(FloorRecord *f, double ground)
 {
     if (f->rows == f->room) {
         const size_t room = f->room > 0 ? 2 * f->room : 1;
-        double *wider = realloc(f->u, room * f->width * sizeof *wider);
-        f->out_of_memory |= !wider;
-        if (!wider)
+        f->u = widened(f->u, room * f->width, sizeof *f->u, &f->out_of_memory);
+        if (f->out_of_memory)
             return NULL;
-        f->u = wider;
         f->room = room;
     }
     double *row = f->u + f->rows++ * f->width;

@@ -1,5 +1,6 @@
 #include "sim/samples.h"
 
+#include "base/carve.h"
 #include "base/units.h"
 
 void sample_energies(const SimSample *s, double energy[N_ENERGIES])
@@ -40,11 +41,9 @@ static double *next_row(Track *t, double time)
         t->n = t->room = 0;
     if (t->n == t->room) {
         const size_t room = 2 * t->room + 1024;
-        double *wider = realloc(t->rows, room * t->width * sizeof *wider);
-        t->lacks_memory |= !wider;
-        if (!wider)
+        t->rows = widened(t->rows, room * t->width, sizeof *t->rows, &t->lacks_memory);
+        if (t->lacks_memory)
             return NULL;
-        t->rows = wider;
         t->room = room;
     }
     return t->rows + t->n++ * t->width;
