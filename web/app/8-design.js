@@ -235,7 +235,7 @@ function ladderPart(host, d) {
   const changes = (o) => keys.map(([key]) => signed(o[`${key}_pct`]));
   const scene = (key) => line([SCENES[key].words, ...keys.map(([name, , , factor]) => digits((l.by_the_set[key][name] ?? NaN) * factor))]);
   host.append(
-    note("Simulated with every effect below, then without each in turn. Needed: leaving it out changes J1, drift ratio or J3 by more than ", keys.map(([key]) => show(l.tolerance[`${key}_pct`])).join(", "), " %, which is 2 % or the scatter as built. imtet check --ladder repeats it with the steps, and says what each costs.",
+    note("Simulated with every effect below, then without each in turn. Needed: leaving it out changes J1, drift ratio or J3 by more than ", keys.map(([key]) => show(l.tolerance[`${key}_pct`])).join(", "), " %, which is 2 % or the scatter as built. imtet check --ladder repeats it with the steps and the whole record, and says what each costs.",
       l.with_all.hardening > 0 ? " With all, storeys that yield keep " + show(100 * l.with_all.hardening) + " % of their stiffness, which P-delta may raise." : ""),
     table("ladder", ["without", ...keys.map(([, title]) => `${title} [%]`), "verdict", "most in", "in this run"],
       l.effects.map((e) => line([e.without, ...changes(e), e.verdict, SCENES[e.most_in].words, e.is_set], { class: e.verdict === "needed" && "knee" }))),
