@@ -11,8 +11,6 @@
  * Source      prctl(2), PR_SET_PDEATHSIG; vfork(2) */
 #pragma once
 
-#include <sys/types.h>
-
 #include "base/status.h"
 
 /* How a worker is started. */

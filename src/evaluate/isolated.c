@@ -22,14 +22,13 @@ static void serve(void *self, size_t worker)
 
 static size_t write_order(void *self, const Worker *w, char *request)
 {
-    return order_write((Order *)(void *)request, w, ((const Isolated *)self)->doer.n_var);
+    return order_write((void *)request, w, ((const Isolated *)self)->doer.n_var);
 }
 
 /* An answer comes whole or not at all; its length says of how many tasks it is. */
-static void look(void *self, Worker *w)
+static void look(void *, Worker *w)
 {
-    (void)self;
-    const Answer *a = (const Answer *)(const void *)w->line;
+    const Answer *a = (const void *)w->line;
     const size_t n_line = w->n_line;
     if (n_line < sizeof *a || n_line < sizeof *a + (a->n_done > 0 ? w->task->size : 0))
         return;
@@ -38,10 +37,8 @@ static void look(void *self, Worker *w)
         pool_settle(w, OUTCOME_GARBLED, 1, "its process answered what is no answer");
 }
 
-static void tell(void *self, Worker *w, Outcome outcome, const char *reason)
+static void tell(void *self, Worker *w, Outcome, const char *)
 {
-    (void)outcome;
-    (void)reason;
     char words[REASON_MAX];
     snprintf(words, sizeof words, "its process ended: %s",
              WIFSIGNALED(w->how) ? strsignal(WTERMSIG(w->how)) : "no answer");

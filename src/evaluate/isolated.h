@@ -6,7 +6,6 @@
 #pragma once
 
 #include "evaluate/order.h"
-#include "evaluate/pool.h"
 
 typedef struct {
     Pool pool;

@@ -79,7 +79,7 @@ int message_receive(int from, int tag, Message *m)
     if (!there)
         return 0;
     MPI_Get_count(&about, MPI_BYTE, &n);
-    *m = (Message){about.MPI_SOURCE, about.MPI_TAG, n, malloc((size_t)n + 1)};
+    *m = (Message){about.MPI_SOURCE, about.MPI_TAG, n, malloc(n + 1)};
     if (!m->bytes)
         MPI_Abort(MPI_COMM_WORLD, status_exit_code(STATUS_NO_MEMORY));
     MPI_Mrecv(m->bytes, n, MPI_BYTE, &message, &about);
@@ -123,6 +123,6 @@ const Executor *cluster_executor(size_t *n)
 {
     int is_over, n_ranks = 1;
     MPI_Finalized(&is_over);
-    *n = !is_over && rank_of(&n_ranks) == 0 ? (size_t)n_ranks - 1 : 0;
+    *n = !is_over && rank_of(&n_ranks) == 0 ? n_ranks - 1 : 0;
     return *n > 0 ? &EXECUTOR_RANKS : NULL;
 }

@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include "base/clock.h"
-#include "evaluate/tasks.h"
 #include "mpi/message.h"
 
 /* Tasks go to a worker for so long in all, so that the way of a message is little beside them; of tasks that take
@@ -25,7 +24,6 @@ typedef struct {
 
 typedef struct {
     const Problem *problem;
-    int n;
     Rank *rank;     /* (n + 1); [0], this one, is not used */
     size_t n_seats; /* workers of all */
     Pool pool[2];   /* those who open the problem, one of each rank, and two for each of their workers: while
@@ -89,7 +87,7 @@ static void *receive(void *user)
 static size_t write_order(void *self, const Worker *w, char *request)
 {
     const Ranks *r = self;
-    Order *order = (Order *)(void *)request;
+    Order *order = (void *)request;
     order->epoch = r->epoch;
     order->worker = w - w->pool->worker;
     return order_write(order, w, r->is_open ? r->problem->n_var : r->problem->recipe_size / sizeof(double));
@@ -108,9 +106,8 @@ static void send_order(void *self, const Worker *w)
 }
 
 /* A rank that is not to be asked any more ends everything. */
-static void tell(void *self, Worker *w, Outcome outcome, const char *reason)
+static void tell(void *self, Worker *w, Outcome outcome, const char *)
 {
-    (void)reason;
     const Ranks *r = self;
     const int i = seat_of(r, w - w->pool->worker).rank;
     if (outcome == OUTCOME_TIMEOUT)
@@ -123,10 +120,9 @@ static void tell(void *self, Worker *w, Outcome outcome, const char *reason)
 }
 
 /* Take the messages of a worker. By how long its tasks took it gets more or fewer at once. */
-static void look(void *self, Worker *w)
+static void look(void *, Worker *w)
 {
     Message m;
-    (void)self;
     for (size_t at = 0; at < w->n_line; at += sizeof m) { /* written whole */
         memcpy(&m, w->line + at, sizeof m);
         const Answer *a = m.bytes;
@@ -190,7 +186,6 @@ static Status start(void **self, const Problem *p, size_t *n_workers, Err *err)
     *self = r;
     pthread_mutex_init(&r->lock, NULL);
     cluster_executor(&n);
-    r->n = (int)n;
     r->n_seats = n;
     r->problem = p;
     r->epoch = (int64_t)(1e9 * clock_seconds());
@@ -200,22 +195,22 @@ static Status start(void **self, const Problem *p, size_t *n_workers, Err *err)
     TRY(open_pool(r, 0, n, err));
     r->is_running = pthread_create(&r->thread, NULL, receive, r) == 0;
     if (!r->is_running)
-        return fail(err, STATUS_NO_MEMORY, "no thread for %d ranks", r->n);
+        return fail(err, STATUS_NO_MEMORY, "no thread for %zu ranks", n);
 
     /* 2. Each opens the problem: a task whose x is the recipe, and whose part is Opened. */
-    for (int i = 1; i <= r->n; i++) {
+    for (size_t i = 1; i <= n; i++) {
         Rank *rank = &r->rank[i];
         rank->opening =
             (Task){.x = p->recipe, .result = &rank->opened, .size = sizeof rank->opened, .observer = &p->observer};
         TRY(pool_ask(&r->pool[0].worker[i - 1], 1, &rank->opening, err));
     }
     *n_workers = 0;
-    for (int i = 1; i <= r->n; i++) {
+    for (size_t i = 1; i <= n; i++) {
         const Opened *o = &r->rank[i].opened;
         TRY(pool_wait(&r->pool[0].worker[i - 1], err));
         if (o->inputs != p->inputs)
             return bad_data(err,
-                            "rank %d on %s reads other files than rank 0 (content %016" PRIx64 ", here %016" PRIx64
+                            "rank %zu on %s reads other files than rank 0 (content %016" PRIx64 ", here %016" PRIx64
                             "): records and building must be the same on every machine",
                             i, o->host, o->inputs, p->inputs);
         *n_workers += o->n_workers;
@@ -225,7 +220,7 @@ static Status start(void **self, const Problem *p, size_t *n_workers, Err *err)
     TRY(open_pool(r, 1, 2 * *n_workers, err));
     pthread_mutex_lock(&r->lock);
     r->n_seats = *n_workers;
-    for (int i = 1; i <= r->n; i++)
+    for (size_t i = 1; i <= n; i++)
         r->rank[i].n_workers = r->rank[i].opened.n_workers;
     r->is_open = 1;
     pthread_mutex_unlock(&r->lock);

@@ -65,7 +65,7 @@ static void do_order(Seat *w, Order *order, const Simulator *simulator, void *se
     const Observer observer = {.go_on = may_go_on, .user = s};
     const Doer doer = {simulator, self, s->problem.n_var, &observer};
     size_t n;
-    Answer *a = order_do(order, (size_t)w->number, &doer, &n);
+    Answer *a = order_do(order, w->number, &doer, &n);
     if (!a)
         MPI_Abort(MPI_COMM_WORLD, status_exit_code(STATUS_NO_MEMORY));
     pthread_mutex_lock(&s->talking);
@@ -118,9 +118,8 @@ static void close_problem(Service *s)
 }
 
 /* Open the problem of a recipe, which is kept, and start its workers. A problem that is open already stays so. */
-static Status open_problem(void *self, size_t worker, const Task *task, Err *err)
+static Status open_problem(void *self, size_t, const Task *task, Err *err)
 {
-    (void)worker;
     Service *s = self;
     Opened *opened = task->result;
     const size_t before = order_bytes(1, 0), n = s->heard.n - before;
