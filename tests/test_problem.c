@@ -324,7 +324,7 @@ static pid_t start_with_workers(const char *command, int *end)
         dup2(ends[1], STDERR_FILENO);
         close(ends[1]);
         if (external_open(&p, &options, 2, &err) == STATUS_OK && queue_open(&q, &p, &err) == STATUS_OK)
-            queue_evaluate(q, 2, X, NULL, F, NULL, ok, &err);
+            queue_evaluate(q, 2, X, 0, F, NULL, ok, &err);
         _exit(1);
     }
     close(ends[1]);
@@ -382,7 +382,7 @@ TEST(a_command_that_does_not_exist_ends_the_search_by_name)
     const ProblemOptions options = command_of("no-such-simulator --fast", 1, 3);
     CHECK_OK(external_open(&p, &options, 1, &err), &err);
     CHECK_OK(queue_open(&q, &p, &err), &err);
-    assert_refused(queue_evaluate(q, 1, x, NULL, f, NULL, &ok, &err), STATUS_BAD_DATA, "no-such-simulator");
+    assert_refused(queue_evaluate(q, 1, x, 0, f, NULL, &ok, &err), STATUS_BAD_DATA, "no-such-simulator");
     queue_close(q);
 }
 
@@ -435,7 +435,7 @@ TEST(an_external_problem_has_the_bounds_senses_names_and_limits_of_its_settings)
     adapter_observe(adapter, &(Observer){.done = hear, .user = &heard});
     Queue *q;
     CHECK_OK(queue_open(&q, p, &err), &err);
-    CHECK_OK(queue_evaluate(q, 2, X, NULL, F, G, ok, &err), &err);
+    CHECK_OK(queue_evaluate(q, 2, X, 0, F, G, ok, &err), &err);
     queue_close(q);
     assert_true(ok[0] && ok[1] && F[0] == 0.75 && F[1] == 1 && F[2] == -0.25 && F[3] == 3);
     assert_close(G[0], 0.5, 1e-15); /* -0.5 - -0.75 of 0.5 */
@@ -483,7 +483,7 @@ TEST(noise_has_the_spread_asked_for_and_the_same_seed_the_same_noise)
         for (int i = 0; i < DRAWS; i++) {
             double f[OBJ];
             unsigned char ok;
-            CHECK_OK(queue_evaluate(q, 1, x, NULL, f, NULL, &ok, &err), &err);
+            CHECK_OK(queue_evaluate(q, 1, x, 0, f, NULL, &ok, &err), &err);
             if (again == 0 && i == 0)
                 memcpy(first, f, sizeof f);
             else if (i == 0)

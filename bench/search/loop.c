@@ -9,7 +9,7 @@
 #include "base/hypervolume.h"
 #include "base/stat.h"
 #include "evaluate/adapter.h"
-#include "moga/population.h"
+#include "moga/surrogate.h"
 #include "study/search_loop.h"
 #include "moga/selection.h"
 #include "moga/variation.h"
@@ -121,7 +121,7 @@ static Status curve_open(Curve *c, const Loop *l, const char *which, Err *err)
 static Status simulate(Loop *l, size_t n, Err *err)
 {
     const size_t n_var = l->problem->n_var, n_obj = l->problem->n_obj;
-    TRY(queue_evaluate(l->queue, n, l->new_X, NULL, l->new_F, NULL, l->ok, err));
+    TRY(queue_evaluate(l->queue, n, l->new_X, 0, l->new_F, NULL, l->ok, err));
     for (size_t i = 0; i < n; i++) {
         if (l->curve.volume)
             curve_add(&l->curve, l->new_F + i * n_obj, l->ok[i]);
@@ -129,7 +129,7 @@ static Status simulate(Loop *l, size_t n, Err *err)
             continue;
         memcpy(l->X + l->n * n_var, l->new_X + i * n_var, n_var * sizeof *l->X);
         memcpy(l->F + l->n * n_obj, l->new_F + i * n_obj, n_obj * sizeof *l->F);
-        problem_to_cube(l->problem, l->X + l->n * n_var, l->U + l->n * n_var);
+        surrogate_coordinates(l->problem, l->X + l->n * n_var, l->U + l->n * n_var);
         l->n++;
     }
     return STATUS_OK;
@@ -186,7 +186,7 @@ static double predict(Loop *l, size_t i)
 {
     const size_t n_obj = l->problem->n_obj;
     double worst = 0.0;
-    problem_to_cube(l->problem, l->members.X + i * l->problem->n_var, l->u);
+    surrogate_coordinates(l->problem, l->members.X + i * l->problem->n_var, l->u);
     rbf_eval(l->rbf, 1, l->u, l->members.F + i * n_obj, l->e);
     for (size_t k = 0; k < n_obj; k++)
         worst = fmax(worst, l->e[k] / l->range[k]);

@@ -1,7 +1,6 @@
 #include "evaluate/adapter.h"
 
 #include "evaluate/external.h"
-#include "evaluate/tasks.h"
 
 struct Adapter {
     Schema schema;
@@ -42,8 +41,7 @@ static void judge(const Evaluation *e, double f[], double g[], const void *user)
 {
     const Adapter *a = user;
     limits_apply(&a->limits, a->schema.n_obj, e, g);
-    for (size_t c = a->limits.n; c < a->problem.n_con; c++)
-        g[c] = e->extra[c - a->limits.n];
+    copy_values(a->problem.n_con - a->limits.n, e->extra, g + a->limits.n);
     for (size_t k = 0; k < a->schema.n_obj; k++)
         f[k] = schema_objective(&a->schema, k)->sense * e->f[k];
 }
@@ -62,7 +60,7 @@ Status simulator_open(Problem *p, const void *recipe, size_t size, Err *err)
 static Status describe(Adapter *a, const Settings *s, Err *err)
 {
     const Tower *t = adapter_tower(a);
-    TRY(schema_of(&a->schema, s, t ? tower_n_floors(t) : 0, err));
+    TRY(schema_of(&a->schema, s, t ? tower_design(t)->n_floors : 0, err));
     if ((a->schema.order.objectives >> MEASURE_DEVICES & 1) && a->schema.design.n_choices == 0)
         return bad_data(err, "search.objectives: all designs have the same devices: set design.devices");
     TRY(limits_read(&a->limits, &a->schema, s->search.limits, err));

@@ -1,7 +1,5 @@
 #include "evaluate/device.h"
 
-#include "base/stat.h"
-
 /* Points of the first grid, for which SUITE records are enough; how many finer ones. */
 enum { GRID_HZ = 13, GRID_DAMPING = 5, GRID_LINKS = 15, FINER = 4, SUITE = 4 };
 enum { POINTS_MAX = GRID_HZ * GRID_DAMPING + 1 };
@@ -12,9 +10,9 @@ static const double HZ_MIN = 0.4, HZ_MAX = 3.2, DAMPING_MIN = 0.01, DAMPING_MAX 
 
 LinearDevice warburton_device(double hz, double mu)
 {
-    return (LinearDevice){.tmd_hz = hz * sqrt(1 - 0.5 * fmin(mu, 1)) / (1 + mu),
-                          .tmd_damping =
-                              sqrt(mu * (1 - 0.25 * fmin(mu, 1)) / (4 * (1 + mu) * (1 - 0.5 * fmin(mu, 1))))};
+    const double share = fmin(mu, 1);
+    return (LinearDevice){.tmd_hz = hz * sqrt(1 - 0.5 * share) / (1 + mu),
+                          .tmd_damping = sqrt(mu * (1 - 0.25 * share) / (4 * (1 + mu) * (1 - 0.5 * share)))};
 }
 
 /* Points in the unit square, by logarithms. */

@@ -5,7 +5,6 @@
 
 #include "base/clock.h"
 #include "base/list.h"
-#include "base/stat.h"
 #include "base/visible.h"
 #include "evaluate/kinds.h"
 #include "evaluate/pool.h"
@@ -48,9 +47,8 @@ static size_t write_request(void *self, const Worker *w, char *request)
     return to - request;
 }
 
-static void tell(void *self, Worker *w, Outcome outcome, const char *reason)
+static void tell(void *, Worker *w, Outcome outcome, const char *reason)
 {
-    (void)self;
     ExternalAnswer *a = w->task[w->n_done].result;
     a->outcome = outcome;
     a->seconds = clock_seconds() - w->asked;
@@ -66,10 +64,8 @@ static int take_numbers(const json_t *list, size_t min, size_t max, double value
     for (size_t k = 0; k < n; k++) {
         const json_t *value = json_array_get(list, k);
         values[k] = json_is_number(value) ? json_number_value(value) : NAN;
-        if (!isfinite(values[k]))
-            return 0;
     }
-    return 1;
+    return all_finite(n, values);
 }
 
 /* What Python, C and others print for numbers that are none (NaN, -Infinity, inf) is no JSON: a word outside strings
@@ -172,9 +168,8 @@ static Pool *pool(void *self)
 }
 
 /* An answer becomes an evaluation; only here it is known how many constraint values the first one of the run had. */
-static void combine(const Problem *p, size_t n, const void *parts, Evaluation *evaluation)
+static void combine(const Problem *p, size_t, const void *parts, Evaluation *evaluation)
 {
-    (void)n;
     const External *e = p->self;
     const ExternalAnswer *a = parts;
     char reason[REASON_MAX];
@@ -249,19 +244,20 @@ static Status split_command(External *e, const char *command, Err *err)
 /* All of a problem that was allocated: the command, the box, the processes. */
 static Status create(External *e, const ProblemOptions *o, size_t n_workers, Err *err)
 {
+    const size_t n_var = e->n_var;
     TRY(split_command(e, o->command, err));
 
     /* 1. The box; a choice has bounds of its own. */
-    TRY_ROOM(e->lower, 2 * e->n_var, "bounds of variables", err);
-    e->upper = e->lower + e->n_var;
-    TRY(read_bounds("problem.lower", o->lower, e->n_var, e->lower, err));
-    TRY(read_bounds("problem.upper", o->upper, e->n_var, e->upper, err));
+    TRY_ROOM(e->lower, 2 * n_var, "bounds of variables", err);
+    e->upper = e->lower + n_var;
+    TRY(read_bounds("problem.lower", o->lower, n_var, e->lower, err));
+    TRY(read_bounds("problem.upper", o->upper, n_var, e->upper, err));
     if (!kinds_are_real(o->kinds)) {
         snprintf(e->kinds, sizeof e->kinds, "%s", o->kinds);
-        TRY_ROOM(e->kind, e->n_var, "variables", err);
-        TRY(kinds_read(e->kinds, e->n_var, e->kind, e->lower, &e->steps, err));
+        TRY_ROOM(e->kind, n_var, "variables", err);
+        TRY(kinds_read(e->kinds, n_var, e->kind, e->lower, &e->steps, err));
     }
-    for (size_t j = 0; j < e->n_var; j++)
+    for (size_t j = 0; j < n_var; j++)
         if (e->lower[j] > e->upper[j])
             return bad_data(err, "problem.lower: %g is above problem.upper = %g (variable %zu)", e->lower[j],
                             e->upper[j], j + 1);
@@ -269,7 +265,7 @@ static Status create(External *e, const ProblemOptions *o, size_t n_workers, Err
     /* 2. The processes. */
     const Protocol protocol = {.name = "problem.command",
                                .work = {.words = e->words},
-                               .request_bytes = REQUEST_BYTES + VALUE_BYTES * e->n_var,
+                               .request_bytes = REQUEST_BYTES + VALUE_BYTES * n_var,
                                .timeout_s = o->timeout_s,
                                .grace_s = PROCESS_GRACE_S,
                                .may_leave = 1,

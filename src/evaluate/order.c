@@ -1,7 +1,6 @@
 #include "evaluate/order.h"
 
 #include "base/clock.h"
-#include "base/stat.h"
 
 /* Where x begins. */
 static double *numbers_of(Order *o)

@@ -21,6 +21,7 @@
  *          Of several faults the one of the task asked for first is reported */
 #pragma once
 
+#include "base/stat.h"
 #include "evaluate/evaluation.h"
 
 typedef struct Pool Pool;
@@ -194,18 +195,6 @@ static inline double problem_from_unit(const Problem *p, size_t d, double u)
     return fmin(fmax(x, lower), upper);
 }
 
-static inline void problem_to_cube(const Problem *p, const double x[], double u[])
-{
-    for (size_t d = 0; d < p->n_var; d++)
-        u[d] = problem_to_unit(p, d, x[d]);
-}
-
-static inline void problem_from_cube(const Problem *p, const double u[], double x[])
-{
-    for (size_t d = 0; d < p->n_var; d++)
-        x[d] = problem_from_unit(p, d, u[d]);
-}
-
 /* Variable d at 0 <= u <= 1 of an even spread: every whole number, word and value that is sold has the same share. */
 static inline double problem_spread(const Problem *p, size_t d, double u)
 {
@@ -228,6 +217,5 @@ static inline void problem_judge(const Problem *p, const Evaluation *e, double f
     if (p->judge)
         p->judge(e, f, g, p->user);
     else
-        for (size_t k = 0; k < p->n_obj; k++)
-            f[k] = e->f[k];
+        copy_values(p->n_obj, e->f, f);
 }

@@ -4,7 +4,6 @@
 #include <pthread.h>
 
 #include "base/carve.h"
-#include "base/stat.h"
 #include "evaluate/cluster.h"
 #include "evaluate/pool.h"
 
@@ -285,13 +284,13 @@ Status queue_next(Queue *q, Finished *out, Err *err)
     return status == STATUS_OK ? STATUS_OK : fail(err, status, "%s", q->why.text);
 }
 
-Status queue_evaluate(Queue *q, size_t n, const double X[], const size_t repeat[], double F[], double G[],
-                      unsigned char ok[], Err *err)
+Status queue_evaluate(Queue *q, size_t n, const double X[], size_t repeat, double F[], double G[], unsigned char ok[],
+                      Err *err)
 {
     const Problem *p = q->problem;
     Finished done;
     for (size_t i = 0; i < n; i++) {
-        const Asked asked = {.x = X + i * p->n_var, .repeat = repeat ? repeat[i] : 0};
+        const Asked asked = {.x = X + i * p->n_var, .repeat = repeat};
         TRY(queue_ask(q, &asked, err));
     }
     for (size_t i = 0; i < n; i++) {
@@ -388,11 +387,10 @@ void queue_close(Queue *q)
     pthread_cond_destroy(&q->plenty);
     pthread_cond_destroy(&q->news);
     release_given(q);
-    Slot *const lists[] = {q->idle, q->first};
-    for (size_t i = 0; i < N_OF(lists); i++)
-        for (Slot *s = lists[i], *next; s; s = next) {
-            next = s->next;
-            free(s);
-        }
+    *(q->n > 0 ? &q->last->next : &q->first) = q->idle; /* behind those that are pending */
+    for (Slot *s = q->first, *next; s; s = next) {
+        next = s->next;
+        free(s);
+    }
     free(q);
 }

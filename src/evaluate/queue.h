@@ -45,6 +45,6 @@ Status queue_next(Queue *q, Finished *out, Err *err);
 size_t queue_pending(const Queue *q); /* asked for and not given by queue_next */
 
 /* A batch: X (n, n_var) asked for, all of it waited for; minimised F (n, n_obj), G (n, n_con), ok (n). Nothing may be
- * pending. repeat (n): as in Asked, NULL: 0. */
-Status queue_evaluate(Queue *q, size_t n, const double X[], const size_t repeat[], double F[], double G[],
-                      unsigned char ok[], Err *err);
+ * pending. repeat: of each, as in Asked. */
+Status queue_evaluate(Queue *q, size_t n, const double X[], size_t repeat, double F[], double G[], unsigned char ok[],
+                      Err *err);

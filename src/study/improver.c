@@ -99,11 +99,8 @@ Status improver_errors(Improver *m, size_t from, const SimOptions *finer, size_t
 {
     const EvaluationTable *path = &m->out->designs;
     const size_t n = path->n - from, n_obj = m->problem->n_obj;
-    size_t again[PATH_MAX_DESIGNS];
-    for (size_t i = 0; i < n; i++)
-        again[i] = repeat;
     TRY(improver_open(m, finer, err));
-    TRY(queue_evaluate(m->queue, n, path->row[from].x, again, m->F, m->G, m->ok, err));
+    TRY(queue_evaluate(m->queue, n, path->row[from].x, repeat, m->F, m->G, m->ok, err));
     for (size_t i = 0; i < n; i++) {
         count(m, 1, !m->ok[i]);
         for (size_t k = 0; k < n_obj && m->ok[i]; k++)
@@ -138,7 +135,7 @@ Status improver_try(Improver *m, Err *err)
     int is_weighted = 0;
     for (size_t k = 0; k < p->n_obj; k++)
         is_weighted |= m->weight[k] > 0.0;
-    TRY(queue_evaluate(m->queue, m->n, m->X, NULL, m->F, m->G, m->ok, err));
+    TRY(queue_evaluate(m->queue, m->n, m->X, 0, m->F, m->G, m->ok, err));
     m->budget -= MIN_OF(m->n, m->budget);
     for (size_t i = 0; i < m->n; i++) {
         const double *f = m->F + i * p->n_obj;

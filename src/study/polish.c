@@ -33,7 +33,8 @@ static int simulate(Descent *d, const double u[])
         return m->ok[0];
     if (d->status == STATUS_OK && m->budget > 0) {
         memcpy(m->u, u, size);
-        problem_from_cube(m->problem, u, m->X);
+        for (size_t j = 0; j < m->problem->n_var; j++)
+            m->X[j] = problem_from_unit(m->problem, j, u[j]);
         problem_repair(m->problem, m->X);
         m->n = d->is_known = 1;
         d->status = improver_try(m, d->err);
@@ -77,14 +78,15 @@ static Status run_nlopt(Improver *m, double size, Err *err)
         .m = m, .err = err, .opt = nlopt_create(n_bounds > 0 || n_var < 2 ? NLOPT_LN_COBYLA : NLOPT_LN_BOBYQA, n_var)};
     if (!d.opt)
         return fail(err, STATUS_NO_MEMORY, "no memory for polishing");
-    problem_to_cube(p, m->x, m->at);
     nlopt_set_lower_bounds1(d.opt, 0.0);
     nlopt_set_upper_bounds1(d.opt, 1.0);
-    for (unsigned j = 0; j < n_var; j++)
+    for (unsigned j = 0; j < n_var; j++) {
+        m->at[j] = problem_to_unit(p, j, m->x[j]);
         if (problem_is_discrete(p, j)) {
             nlopt_set_lower_bound(d.opt, j, m->at[j]);
             nlopt_set_upper_bound(d.opt, j, m->at[j]);
         }
+    }
     nlopt_set_initial_step1(d.opt, size * STEP);
     nlopt_set_xtol_rel(d.opt, 1e-6);
     nlopt_set_ftol_abs(d.opt, 0.1 * m->gain_min); /* of one step, of which a descent has many */
