@@ -8,7 +8,6 @@
 #pragma once
 
 #include <pthread.h>
-#include <sys/types.h>
 
 #include "api/failure.h"
 #include "evaluate/schema.h"

@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include "api/handle.h"
-#include "base/csv.h"
 #include "base/hash.h"
 #include "base/linalg.h"
 #include "base/pack.h"
@@ -46,7 +45,7 @@ static void walk_row(Pack *p, imtet_search *s, size_t i, Err *err)
     if (!p->faulty)
         evaluation_set_outcome(e, (Outcome)outcome, reason);
     e->kind = (EvaluationKind)kind;
-    e->generation = (long)generation;
+    e->generation = generation;
     s->design[i].place = told ? DESIGN_TOLD : DESIGN_FREE;
     s->n_told += told;
 }
@@ -78,7 +77,7 @@ static void walk(Pack *p, imtet_search *s, Err *err)
     pack(p, s->state, s->n_state);
     for (size_t i = 0; i < s->n_entered && !p->faulty; i++)
         p->faulty = s->design[i].place != DESIGN_TOLD;
-    p->faulty = p->faulty || s->n_state == 0;
+    p->faulty |= s->n_state == 0;
     pack_size(p, &s->failing, COUNT_MAX);
 }
 
@@ -124,7 +123,7 @@ Status saved_write(imtet_search *s, const char *path, Err *err)
     char *text = settings_text(&s->settings);
     pack(&p, (void *)(uintptr_t)MARK, sizeof MARK);
     pack_expect(&p, SAVED_VERSION);
-    p.faulty = p.faulty || !text;
+    p.faulty |= !text;
     if (text)
         walk_text(&p, text, TEXT_MAX);
     walk_text(&p, (char *)(uintptr_t)linalg_kernel_name(), KERNELS_MAX);
@@ -158,7 +157,7 @@ static Status read_search(Pack *p, const char *path, imtet_search **out, Err *er
         p->faulty ? bad_data(err, "%s: is damaged", path) : settings_parse(&settings, path, text, err);
     free(text);
     TRY(status);
-    settings.problem.constraints = (long)n_con;
+    settings.problem.constraints = n_con;
     TRY(handle_create(out, &settings, n_given, err));
     walk(p, *out, err);
     if (!pack_finished(p))

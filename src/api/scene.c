@@ -2,7 +2,6 @@
 
 #include "api/named_values.h"
 #include "base/linalg.h"
-#include "base/stat.h"
 #include "base/text.h"
 #include "evaluate/device.h"
 #include "motion/motion_scale.h"
@@ -52,9 +51,12 @@ static void release_tower(imtet_scene *s, Problem *p)
 }
 
 /* Read the settings and open the first tower, which finds what is wrong with them. */
-static Status open_scene(imtet_scene *s, const char *path, const char *const list[], Err *err)
+static Status open_scene(imtet_scene **out, const char *path, const char *const list[], Err *err)
 {
     Problem first;
+    TRY_ROOM(*out, 1, "a scene", err);
+    imtet_scene *s = *out;
+    pthread_mutex_init(&s->lock, NULL);
     settings_defaults(&s->settings);
     if (path)
         TRY(settings_read(&s->settings, path, NULL, NULL, err));
@@ -70,11 +72,7 @@ imtet_status imtet_scene_open(const char *path, const char *const settings[], im
     Err err = {0};
     if (!out)
         return api_status(misused(&err, "imtet_scene_open: out is NULL"), &err, error);
-    *out = calloc(1, sizeof **out);
-    if (!*out)
-        return api_status(fail_memory(&err, 1, "a scene"), &err, error);
-    pthread_mutex_init(&(*out)->lock, NULL);
-    const Status status = open_scene(*out, path, settings, &err);
+    const Status status = open_scene(out, path, settings, &err);
     if (status != STATUS_OK)
         imtet_scene_free(out);
     return api_status(status, &err, error);
@@ -111,7 +109,7 @@ typedef struct {
 static Status check_question(Question *q, const SimOptions *o, const DesignSpace *space, Err *err)
 {
     const char *keys[N_SCENES];
-    const size_t n_var = (size_t)space->n_var;
+    const size_t n_var = space->n_var;
     if (!q->asked)
         return misused(err, "kind is NULL");
     for (SceneKind k = 0; k < N_SCENES; k++)
@@ -187,13 +185,13 @@ static Status describe(Question *q, Err *err)
 {
     const Problem *p = &q->problem;
     const Scenario *scenario = tower_record(q->tower, 0);
-    const int n_floors = tower_n_floors(q->tower);
+    const int n_floors = tower_design(q->tower)->n_floors;
     SceneModes modes;
     TRY(scene_frequencies(scenario->scene, p->upper, &modes, err));
     result_numbers(q->result, "floors", 1, (double[]){n_floors});
     result_numbers(q->result, "lower", p->n_var, p->lower);
     result_numbers(q->result, "upper", p->n_var, p->upper);
-    result_numbers(q->result, "building_hz", (size_t)n_floors, modes.building_hz);
+    result_numbers(q->result, "building_hz", n_floors, modes.building_hz);
     result_text(q->result, "record", scenario->motion.name);
     TRY(add_names(q, "variables", VARIABLES, p->n_var, err));
     TRY(add_names(q, "objectives", OBJECTIVES, p->n_obj, err));

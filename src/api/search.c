@@ -5,11 +5,9 @@
 #include "api/search_config.h"
 #include "base/clock.h"
 #include "base/linalg.h"
-#include "base/stat.h"
 #include "base/text.h"
 #include "evaluate/limits.h"
 #include "evaluate/tasks.h"
-#include "moga/archive.h"
 
 enum { STARTS_MAX = 1000000 };
 
@@ -28,7 +26,7 @@ Status handle_add(imtet_search *s, const double x[], Err *err)
     }
     TRY(evaluation_table_add(&s->table, &row, err));
     copy_values(s->table.n_var, x, row->x);
-    row->id = (long)s->table.n;
+    row->id = s->table.n;
     s->design[s->table.n - 1] = (AskedDesign){0};
     return STATUS_OK;
 }
@@ -55,13 +53,11 @@ static Status advance(imtet_search *s, Err *err)
         const size_t row = q.number - 1;
         if (row == s->table.n)
             status = handle_add(s, q.x, err);
-        else if (row > s->table.n)
-            status = fail(err, STATUS_INTERNAL, "design %zu was never asked for", q.number);
         if (status != STATUS_OK)
             break;
         Evaluation *e = &s->table.row[row];
         e->kind = q.kind;
-        e->generation = (long)q.generation;
+        e->generation = q.generation;
         if (s->design[row].place == DESIGN_TOLD)
             status = search_tell(s->search, q.number, e, NULL, err);
     }
@@ -80,8 +76,7 @@ static void judge(const Evaluation *e, double f[], double g[], const void *user)
     const imtet_search *s = user;
     for (size_t k = 0; k < s->schema.n_obj; k++)
         f[k] = schema_objective(&s->schema, k)->sense * e->f[k];
-    for (size_t c = 0; c < s->schema.n_extra; c++)
-        g[c] = e->extra[c];
+    copy_values(s->schema.n_extra, e->extra, g);
 }
 
 Status handle_create(imtet_search **out, const Settings *settings, size_t n_given, Err *err)
@@ -95,13 +90,8 @@ Status handle_create(imtet_search **out, const Settings *settings, size_t n_give
     s->process = getpid();
     s->n_given = n_given;
     pthread_mutex_init(&s->lock, NULL);
-    s->problem = (Problem){.n_var = n_var,
-                           .n_obj = o->objectives,
-                           .n_con = o->constraints,
-                           .n_extra = o->constraints,
-                           .n_parts = 1,
-                           .n_workers = 1};
-    s->table = evaluation_table(n_var, s->problem.n_obj, s->problem.n_extra);
+    s->problem = (Problem){.n_var = n_var, .n_obj = o->objectives, .n_con = o->constraints};
+    s->table = evaluation_table(n_var, o->objectives, o->constraints);
     TRY_ROOM(s->lower, (2 + n_given) * n_var, "numbers of a search", err);
     TRY_ROOM(s->kind, n_var, "variables", err);
     s->upper = s->lower + n_var;
@@ -113,10 +103,12 @@ Status handle_create(imtet_search **out, const Settings *settings, size_t n_give
 Status handle_open(imtet_search *s, Err *err)
 {
     Problem *p = &s->problem;
-    for (size_t j = 0; j < p->n_var; j++)
-        if (!isfinite(s->lower[j]) || !isfinite(s->upper[j]) || s->lower[j] > s->upper[j])
+    for (size_t j = 0; j < p->n_var; j++) {
+        const double lower = s->lower[j], upper = s->upper[j];
+        if (!isfinite(lower) || !isfinite(upper) || lower > upper)
             return bad_data(err, "variable %zu has the bounds %g and %g; give finite ones, the lower one first", j + 1,
-                            s->lower[j], s->upper[j]);
+                            lower, upper);
+    }
     TRY(kinds_read(s->settings.problem.kinds, p->n_var, s->kind, s->lower, &s->steps, err));
     TRY(aspirations_read(&p->aspire, s->aspire, &s->schema, s->settings.search.aspire, err));
     p->lower = s->lower;
@@ -177,7 +169,7 @@ static Status settings_of(const imtet_search_options *o, Settings *s, Err *err)
     TRY(settings_put(s, "problem.senses", o->senses ? o->senses : "min", err));
     if (o->constraints > CONSTRAINTS_MAX)
         return bad_data(err, "constraints: %zu are more than %d", o->constraints, CONSTRAINTS_MAX);
-    s->problem.constraints = (long)o->constraints;
+    s->problem.constraints = o->constraints;
     for (size_t i = 0; o->settings && o->settings[i]; i++) {
         snprintf(key, sizeof key, "%.*s", (int)strcspn(o->settings[i], "="), o->settings[i]);
         if (index_of_word(key, KEYS, N_OF(KEYS)) == N_OF(KEYS))
@@ -303,7 +295,7 @@ static Status ask(imtet_search *s, size_t n, long ids[], double X[], size_t *fou
         if (s->design[s->next].place != DESIGN_FREE)
             continue;
         s->design[s->next].place = DESIGN_OUT;
-        ids[*found] = (long)s->next + 1;
+        ids[*found] = s->next + 1;
         copy_values(n_var, s->table.row[s->next].x, X + *found * n_var);
         ++*found;
     }
@@ -320,7 +312,6 @@ imtet_status imtet_search_ask(imtet_search *search, size_t n, long ids[], double
 
 /* The answers of one call. */
 typedef struct {
-    size_t n;
     const long *ids;
     const double *F, *G;
     const char *const *failed;
@@ -353,7 +344,7 @@ static Status check_answer(imtet_search *s, const Answers *t, size_t i, Err *err
 /* Store answer i and tell the search; 0 has no sign, as in the run that a study stores. */
 static Status store_answer(imtet_search *s, const Answers *t, size_t i, Err *err)
 {
-    const size_t n_obj = s->schema.n_obj, n_con = s->schema.n_extra, row = (size_t)t->ids[i] - 1;
+    const size_t n_obj = s->schema.n_obj, n_con = s->schema.n_extra, row = t->ids[i] - 1;
     const char *failed = t->failed ? t->failed[i] : NULL;
     Evaluation *e = &s->table.row[row];
     evaluation_set_outcome(e, failed ? OUTCOME_ERROR : OUTCOME_OK,
@@ -372,7 +363,7 @@ static Status store_answer(imtet_search *s, const Answers *t, size_t i, Err *err
 imtet_status imtet_search_tell(imtet_search *search, size_t n, const long ids[], const double F[], const double G[],
                                const char *const failed[], imtet_error *error)
 {
-    const Answers answers = {n, ids, F, G, failed};
+    const Answers answers = {ids, F, G, failed};
     size_t n_checked = 0;
     ENTER(search, err, error);
     Status status = n == 0 || ids ? STATUS_OK : misused(&err, "imtet_search_tell: ids is NULL");
@@ -391,28 +382,27 @@ imtet_status imtet_search_tell(imtet_search *search, size_t n, const long ids[],
 imtet_status imtet_search_look(imtet_search *search, imtet_search_state *state, imtet_error *error)
 {
     ENTER(search, err, error);
-    const imtet_search *s = search;
     const Status status = state && state->size == sizeof *state
                               ? advance(search, &err)
                               : misused(&err, "imtet_search_look: state.size is no sizeof state, %zu", sizeof *state);
     if (status == STATUS_OK) {
         *state = (imtet_search_state){.size = sizeof *state,
-                                      .variables = s->schema.n_var,
-                                      .objectives = s->schema.n_obj,
-                                      .constraints = s->schema.n_extra,
-                                      .told = s->n_told,
-                                      .done = s->is_over,
-                                      .why = s->is_over ? stop_reason_words(s->reason) : "",
-                                      .senses = s->settings.problem.senses,
-                                      .lower = s->lower,
-                                      .upper = s->upper};
-        for (size_t i = 0; i < s->table.n; i++) {
-            state->under_way += s->design[i].place == DESIGN_OUT;
-            state->ready += s->design[i].place == DESIGN_FREE;
-            state->failed += s->design[i].place == DESIGN_TOLD && s->table.row[i].outcome != OUTCOME_OK;
+                                      .variables = search->schema.n_var,
+                                      .objectives = search->schema.n_obj,
+                                      .constraints = search->schema.n_extra,
+                                      .told = search->n_told,
+                                      .done = search->is_over,
+                                      .why = search->is_over ? stop_reason_words(search->reason) : "",
+                                      .senses = search->settings.problem.senses,
+                                      .lower = search->lower,
+                                      .upper = search->upper};
+        for (size_t i = 0; i < search->table.n; i++) {
+            state->under_way += search->design[i].place == DESIGN_OUT;
+            state->ready += search->design[i].place == DESIGN_FREE;
+            state->failed += search->design[i].place == DESIGN_TOLD && search->table.row[i].outcome != OUTCOME_OK;
         }
-        const size_t most = (size_t)s->settings.search.max_evals, spent = state->told + state->under_way;
-        state->left = most > spent && !s->is_over ? most - spent : 0;
+        const size_t most = search->settings.search.max_evals, spent = state->told + state->under_way;
+        state->left = most > spent && !search->is_over ? most - spent : 0;
     }
     return leave(search, status, &err, error);
 }
