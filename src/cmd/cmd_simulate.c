@@ -77,7 +77,7 @@ static Status give(const Args *args, const Job *job, const Settings *s, const To
 {
     const Motion *m = &tower_record(t, 0)->motion;
     const MeasureOrder *order = tower_measures(t);
-    const char *missing = measures_missing(order, s->search.objectives, tower_n_floors(t));
+    const char *missing = measures_missing(order, s->search.objectives, tower_design(t)->n_floors);
     char label[DESIGN_LABEL_MAX], damage[DAMAGE_WORDS_MAX];
     Document d = {.data = json_array(), .rows = json_array()};
     if (m->warning[0] && (args_has(args, "--csv") || args_has(args, "--json"))) /* where no table says it */

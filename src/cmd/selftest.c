@@ -119,7 +119,7 @@ static Status check_tower(Selftest *t, const TowerCase *c, Err *err)
     double x[FLOORS_MAX + 2];
     TRY(set_all(&s, c->settings, N_OF(c->settings), err));
     TRY(tower_open(&p, &s, TOWER_SINGLE, 1, err));
-    const int n = tower_n_floors(tower_of(&p));
+    const int n = tower_design(tower_of(&p))->n_floors;
     for (int j = 0; j < n + 2; j++)
         x[j] = j < n ? c->gap_m : c->wall_m;
     const Status status = tower_simulate(&p, 1, &(SimTask){.kind = c->kind, .x = x}, &r, err);

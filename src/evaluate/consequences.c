@@ -1,8 +1,5 @@
 #include "evaluate/consequences.h"
 
-#include <math.h>
-#include <stdio.h>
-
 #include "base/figure.h"
 #include "base/text.h"
 
@@ -70,13 +67,12 @@ const char *damage_words(const SimResult *r, char text[DAMAGE_WORDS_MAX])
     text[0] = 0;
     for (DamagedPart p = 0; p < N_PARTS && r->outcome == RUN_OK; p++) {
         const int is_drift = p != PART_ACCELERATION;
-        const double worst = is_drift ? 100 * r->drift_ratio_max : r->j3_g;
-        const int state = damage_state(p, is_drift ? r->drift_ratio_max : worst);
-        const char *unit = is_drift ? " %" : " g";
-        figure_text(worst, NAN, NAN, "", figure);
+        const double worst = is_drift ? r->drift_ratio_max : r->j3_g;
+        const int state = damage_state(p, worst);
+        figure_text(is_drift ? 100 * worst : worst, NAN, NAN, "", figure);
         text_join(text, DAMAGE_WORDS_MAX, ", ", "%s%s: %s%s (%s%s)",
                   p ? "" : "damage by Hazus: ", DAMAGE_PARTS[p].words, state == DAMAGE_STATES ? "beyond " : "",
-                  damage_word(state), figure, unit);
+                  damage_word(state), figure, is_drift ? " %" : " g");
     }
     figure_text(100 * damage_loss(r), NAN, NAN, "", figure);
     if (r->outcome == RUN_OK)

@@ -113,24 +113,21 @@ Status evaluation_table_append(EvaluationTable *t, const Evaluation *from, Err *
     Evaluation *e;
     TRY(evaluation_table_add(t, &e, err));
     const Evaluation own = *e;
-    const int has_reason = from->reason && from->reason[0];
-    if (has_reason)
-        TRY(evaluation_table_give_room(e, err));
-    char *const room = e->room;
     *e = *from;
-    e->room = room;
+    e->room = NULL;
     e->reason = "";
     e->err = NULL;
-    if (has_reason) {
-        snprintf(room, REASON_MAX, "%s", from->reason);
-        e->reason = room;
-    }
 #define X(array, width)                                                                                                \
     e->array = own.array;                                                                                              \
     if (from->array && e->array)                                                                                       \
         copy_values(t->width, from->array, e->array);
     EVALUATION_ARRAYS(X)
 #undef X
+    if (from->reason && from->reason[0]) {
+        TRY(evaluation_table_give_room(e, err));
+        snprintf(e->room, REASON_MAX, "%s", from->reason);
+        e->reason = e->room;
+    }
     return STATUS_OK;
 }
 

@@ -44,15 +44,16 @@ Status limits_read(Limits *limits, const Schema *schema, const char *list, Err *
     for (size_t i = 0; i < limits->n; i++) {
         const Limit *l = &limits->limit[i], *other = find(limits, limits->n, l->result, -l->sign);
         const Column *c = schema_objective(schema, l->result);
-        const char *relation = l->sign > 0 ? "<=" : ">=", *opposite = l->sign > 0 ? ">=" : "<=";
+        const int is_upper = l->sign > 0;
+        const char *relation = is_upper ? "<=" : ">=", *opposite = is_upper ? ">=" : "<=";
         if (find(limits, i, l->result, l->sign))
             return bad_data(err, "search.limits: %s%s is given twice", c->name, relation);
-        if (l->sign > 0 && other && other->bound > l->bound)
+        if (is_upper && other && other->bound > l->bound)
             return bad_data(err, "search.limits: %s<=%g and >=%g contradict each other", c->name, l->bound,
                             other->bound);
-        if (l->sign > 0 && l->bound < 0 && is_tower)
+        if (is_upper && l->bound < 0 && is_tower)
             return bad_data(err, "search.limits: %s<=%g: no design has less than 0", c->name, l->bound);
-        if (l->sign > 0 && l->bound >= 1 && is_tower && measure_is_share(schema->order.of[l->result]))
+        if (is_upper && l->bound >= 1 && is_tower && measure_is_share(schema->order.of[l->result]))
             return bad_data(err, "search.limits: %s<=%g: this is a share of 1, no per cent; write %g for %g %%",
                             c->name, l->bound, 0.01 * l->bound, l->bound);
         if (!other && l->sign * c->sense < 0)

@@ -9,12 +9,8 @@ static const Measure MEASURES[N_MEASURES] = {
     {name, unit, sense, needs, {title, shown, factor}, what},
     MEASURE_LIST(X)
 #undef X
-#define CHANCE                                                                                                         \
-    {                                                                                                                  \
-        "p", "-", 1, NEEDS_NOTHING, {"p", "", 1}, "share of the simulations that exceed a limit"                       \
-    }
-        CHANCE,
-    CHANCE, CHANCE, CHANCE};
+        [MEASURES_LISTED... N_MEASURES - 1] = {
+            "p", "-", 1, NEEDS_NOTHING, {"p", "", 1}, "share of the simulations that exceed a limit"}};
 
 const Measure *measure(int k)
 {
@@ -45,7 +41,7 @@ double measure_value(const SimResult *r, int k)
         ((needs & NEEDS_NEIGHBOUR) && r->neighbour.n == 0))
         return NAN;
     switch ((MeasureId)k) {
-#define X(id, name, unit, sense, needs, value, title, shown, factor, what)                                             \
+#define X(id, name, unit, sense, needs, value, ...)                                                                    \
     case MEASURE_##id:                                                                                                 \
         return value;
         MEASURE_LIST(X)
@@ -65,7 +61,7 @@ Measured measured(const SimResult *r)
     return m;
 }
 
-unsigned measures_need(MeasureSet set)
+static unsigned measures_need(MeasureSet set)
 {
     unsigned needs = NEEDS_NOTHING;
     for (int k = 0; k < N_MEASURES; k++)
@@ -99,10 +95,9 @@ Status measures_check(MeasureSet set, const CoreOptions *core, const Building *b
     Foundation f = {0};
     const CoreSection section = core_section(core);
     foundation_parse(core->foundation, 1, &f, NULL); /* of settings that were checked */
-    const unsigned has = NEEDS_FORCES | NEEDS_FILTER | (b->yields ? NEEDS_YIELDING : 0u) |
-                         (neighbour_is_given(core) ? NEEDS_NEIGHBOUR : 0u) | (f.rotation > 0 ? NEEDS_TURNING : 0u) |
-                         (f.radius_m > 0 ? NEEDS_RADIUS : 0u) | (section != CORE_EFFECTIVE ? NEEDS_SHAPE : 0u) |
-                         (section == CORE_BOX ? NEEDS_WALLS : 0u);
+    const unsigned has = (b->yields ? NEEDS_YIELDING : 0u) | (neighbour_is_given(core) ? NEEDS_NEIGHBOUR : 0u) |
+                         (f.rotation > 0 ? NEEDS_TURNING : 0u) | (f.radius_m > 0 ? NEEDS_RADIUS : 0u) |
+                         (section != CORE_EFFECTIVE ? NEEDS_SHAPE : 0u) | (section == CORE_BOX ? NEEDS_WALLS : 0u);
     for (int k = 0; k < N_MEASURES; k++)
         for (size_t i = 0; set >> k & 1 && i < N_OF(LACKS); i++)
             if (MEASURES[k].needs & LACKS[i].needs & ~has)
@@ -192,7 +187,7 @@ static Status take_chance(MeasureOrder *o, const char *key, const char *text, in
     if (!*relation || end == relation + 1 || strcmp(end, ")") != 0 || !isfinite(c.bound))
         return bad_data(err, "%s: '%.60s' is no p(NAME>NUMBER) with a column as NAME", key, text);
     snprintf(name, sizeof name, "%.*s", n, c.name + 2);
-    c.of = find(name, (size_t)n);
+    c.of = find(name, n);
     c.sign = *relation == '>' ? 1 : -1;
     if (c.of == MEASURES_LISTED)
         return no_result(key, name, err);

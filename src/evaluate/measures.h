@@ -15,7 +15,6 @@
 
 #include "evaluate/consequences.h"
 #include "evaluate/evaluation.h"
-#include "sim/result.h"
 
 /* What a measure needs beside a simulation; a set of bits. */
 enum {
@@ -119,7 +118,7 @@ enum {
       "force by which anchors hold the core's foundation down beside its weight; anchors=inf: what that takes")
 
 typedef enum {
-#define X(id, name, unit, sense, needs, value, title, shown, factor, what) MEASURE_##id,
+#define X(id, ...) MEASURE_##id,
     MEASURE_LIST(X)
 #undef X
         MEASURES_LISTED
@@ -172,8 +171,6 @@ Measured measured(const SimResult *r);
 /* Sets of measures: bit k is measure k. */
 typedef uint64_t MeasureSet;
 _Static_assert(N_MEASURES <= 64, "a set of measures has 64 bits");
-
-unsigned measures_need(MeasureSet set);
 
 /* Options that compute what the set needs and no more; all where they ask for forces. */
 void measures_ask(MeasureSet set, SimOptions *o);

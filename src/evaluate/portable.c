@@ -7,18 +7,12 @@
 static const uint64_t MARK = 0x00316574746d6900u; /* "imtet1", the form of the bytes */
 enum { SETTINGS_MAX = 1 << 20, DEGREES_MAX = 1 << 12, SAMPLES_MAX = 1 << 24 };
 
-/* Room for n numbers while reading; 1: there is none, which is a fault of the walk. */
-static int lacks_room(Pack *p, double **x, size_t n)
+/* While reading there is to be room for them; else it is a fault of the walk. */
+static void walk_numbers(Pack *p, double **x, size_t n)
 {
     if (p->reading && !p->faulty && n > 0)
         p->faulty |= !(*x = malloc(n * sizeof **x));
-    return p->faulty || n == 0;
-}
-
-static void walk_numbers(Pack *p, double **x, size_t n)
-{
-    if (!lacks_room(p, x, n))
-        pack(p, *x, n * sizeof **x);
+    pack(p, *x, n * sizeof **x);
 }
 
 /* Numbers that may be absent. */

@@ -31,7 +31,7 @@ void replicate_gaps(uint32_t seed, size_t k, double tolerance_m, const DesignSpa
 ReplicatePlan replicate_plan(const SimOptions *o, size_t n_records)
 {
     return (ReplicatePlan){.n_records = n_records,
-                           .n_replicates = (size_t)o->replicates,
+                           .n_replicates = o->replicates,
                            .rule = o->quantile > 0 ? ROBUST_QUANTILE : o->robust,
                            .quantile = o->quantile > 0 ? o->quantile : 1 - o->tail,
                            .spread = spread_word(o->gap_tolerance_m, &o->uncertain)};
@@ -72,11 +72,10 @@ AsBuilt replicate_as_built(uint32_t seed, size_t k, const UncertainOptions *u)
     return b;
 }
 
-/* Simulation i in the order of the records, then of their replicates. */
-static const Measured *simulation(const ReplicatePlan *plan, const void *parts, size_t size, size_t i)
+/* Of simulation i in the order of the records, then of their replicates. */
+static size_t part_of(const ReplicatePlan *plan, size_t i)
 {
-    const size_t part = i % plan->n_replicates * plan->n_records + i / plan->n_replicates;
-    return measured_part(parts, size, part);
+    return i % plan->n_replicates * plan->n_records + i / plan->n_replicates;
 }
 
 double robust_pooled(const ReplicatePlan *plan, double sense, size_t n, double v[], double *sd)
@@ -151,10 +150,11 @@ void replicates_summarise(const ReplicatePlan *plan, const void *parts, size_t s
 
     /* 1. What failed first. */
     for (size_t i = n; i-- > 0;) {
-        const Measured *m = simulation(plan, parts, size, i);
+        const size_t part = part_of(plan, i);
+        const Measured *m = measured_part(parts, size, part);
         out->seconds += m->seconds;
         if (m->outcome != RUN_OK) {
-            out->shown = (size_t)((const char *)m - (const char *)parts) / size;
+            out->shown = part;
             out->outcome = (Outcome)m->outcome;
             out->n_failed++;
         }
@@ -171,7 +171,7 @@ void replicates_summarise(const ReplicatePlan *plan, const void *parts, size_t s
     for (int k = 0; k < N_MEASURES; k++) {
         double sum = 0, squares = 0, value, sd;
         for (size_t i = 0; i < n; i++)
-            values[i] = simulation(plan, parts, size, i)->value[k];
+            values[i] = measured_part(parts, size, part_of(plan, i))->value[k];
         combine_measure(plan, k, values, NULL, &out->mean[k], &out->sd[k]);
         for (size_t b = 0; b < n_suites; b++) {
             combine_measure(plan, k, values, drawn[b], &value, &sd);

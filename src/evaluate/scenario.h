@@ -4,8 +4,6 @@
  * Ownership   the scene borrows the motion beside it: a Scenario must stay where it was opened */
 #pragma once
 
-#include "motion/motion.h"
-#include "motion/options.h"
 #include "sim/sim.h"
 
 typedef struct {

@@ -75,12 +75,8 @@ Status schema_of(Schema *schema, const Settings *s, int n_floors, Err *err)
         memcpy(schema->kinds, o->kinds, sizeof schema->kinds);
     }
     TRY_ROOM(schema->column, schema->n_var + schema->n_obj + schema->n_extra, "columns", err);
-    if (!is_tower) {
-        const Status status = name_columns(schema, o, err);
-        if (status != STATUS_OK)
-            schema_free(schema);
-        return status;
-    }
+    if (!is_tower)
+        return name_columns(schema, o, err);
     for (int j = 0; j < schema->design.n_var; j++)
         design_variable_name(&schema->design, j, schema->column[j].name);
     for (int k = 0; k < schema->order.n; k++) {
@@ -134,7 +130,7 @@ Status schema_cell(const Schema *schema, size_t j, const Table *t, size_t row, d
         if (status == STATUS_OK && *x == floor(*x) && schema_word(schema, j, *x, word))
             return STATUS_OK;
         for (int i = 0; n < sizeof words && schema_word(schema, j, i, word); i++)
-            n += (size_t)snprintf(words + n, sizeof words - n, i > 0 ? ", %s" : "%s", word);
+            n += snprintf(words + n, sizeof words - n, i > 0 ? ", %s" : "%s", word);
         return bad_data(err, "%s is '%.60s'; it is one of %s%s", where, text, words, n < sizeof words ? "" : "...");
     }
     if (status != STATUS_OK)

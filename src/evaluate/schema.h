@@ -4,12 +4,10 @@
  *   constraint values g_1 ... that external workers answer (ProblemOptions.constraints)
  *
  * Internally every objective is minimised, f = sense * value; every file shows the natural value.
- * Ownership  schema_of allocates, schema_free releases (an empty Schema is fine) */
+ * Ownership  schema_of allocates, schema_free releases, after a failure too (an empty Schema is fine) */
 #pragma once
 
 #include "base/list.h"
-#include "base/csv.h"
-#include "base/option.h"
 #include "evaluate/kinds.h"
 #include "scene/design.h"
 #include "evaluate/measures.h"

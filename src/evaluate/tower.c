@@ -124,12 +124,10 @@ Status tower_acquire(Tower *t, size_t place, const Scenario **out, Err *err)
             const SceneOptions options = settings_scene(s);
             status = scenario_open(w, &options, &s->motion, &record_of(t, place)->motion, err);
         }
-        const Building *b = status == STATUS_OK ? scene_building(w->scene) : NULL;
-        if (b)
-            status = measures_check(t->judged, &w->options.core, b, err);
-        if (status == STATUS_OK && s->sim.uncertain.strength > 0 && !b->yields)
+        THEN(status, measures_check(t->judged, &w->options.core, scene_building(w->scene), err));
+        if (status == STATUS_OK && s->sim.uncertain.strength > 0 && !scene_building(w->scene)->yields)
             status = bad_data(err, "sim.uncertain: strength: no storey yields; set building.yield_drift");
-        if (b && status != STATUS_OK)
+        if (w && status != STATUS_OK)
             scenario_close(w);
         free(s);
     }
@@ -184,7 +182,7 @@ static Status simulate(void *self, size_t worker, const Task *task, Err *err)
     const Variant *v = &task->variant;
     const size_t n = t->plan.n_records, k = task->repeat * t->plan.n_replicates + task->part / n;
     const size_t place = v->scene + task->part % n;
-    const SceneKind kind = (SceneKind)v->kind;
+    const SceneKind kind = v->kind;
     SimResult own, *result = v->is_full ? &((FullResult *)task->result)->result : &own;
     Design design = {0};
     SimWorker *w;
@@ -238,16 +236,17 @@ static Pool *processes(void *self)
 static void combine(const Problem *p, size_t n, const void *parts, Evaluation *e)
 {
     const Tower *t = p->self;
+    const MeasureOrder *order = &t->order;
     const ReplicatePlan plan = tower_plan(t, n);
     ReplicateSummary sum;
     replicates_summarise(&plan, parts, p->part_size, 0, &sum);
     evaluation_set_outcome(e, sum.outcome, measured_part(parts, p->part_size, sum.shown)->reason);
-    for (int i = 0; i < t->order.n_obj; i++) {
-        e->f[i] = sum.mean[t->order.of[i]];
-        e->sd[i] = sum.sd[t->order.of[i]];
+    for (int i = 0; i < order->n_obj; i++) {
+        e->f[i] = sum.mean[order->of[i]];
+        e->sd[i] = sum.sd[order->of[i]];
     }
-    for (int i = t->order.n_obj; i < t->order.n; i++)
-        e->extra[i - t->order.n_obj] = sum.mean[t->order.of[i]];
+    for (int i = order->n_obj; i < order->n; i++)
+        e->extra[i - order->n_obj] = sum.mean[order->of[i]];
     e->seconds = sum.seconds;
     e->replicates = (int)sum.n_replicates;
 }
@@ -337,6 +336,7 @@ static Status prepare(Tower *t, Err *err)
 {
     const Recipe *r = t->recipe;
     const Settings *s = &r->settings;
+    DesignSpace *space = &t->design;
     SimWorker *unused;
 
     /* 1. Room for records, scenes and workers. */
@@ -362,22 +362,22 @@ static Status prepare(Tower *t, Err *err)
             return fail(err, status, "%s%s", i < t->n_workers ? "" : "motion.records: ", why.text);
     }
     if (r->is_sweep)
-        TRY(tower_space(s, &t->design, err));
+        TRY(tower_space(s, space, err));
     else
-        t->design = *scene_design(t->place[0].scenario->scene);
+        *space = *scene_design(t->place[0].scenario->scene);
 
     /* 3. Objectives and variables. */
-    TRY(measures_order(&t->order, s->search.objectives, s->search.limits, (int)t->design.n_floors, err));
-    design_bounds(&t->design, &s->design, t->lower, t->upper);
-    for (int j = 0; j < t->design.n_var; j++)
-        if (design_is_log(&t->design, j) || design_word(&t->design, j, 0)) {
+    TRY(measures_order(&t->order, s->search.objectives, s->search.limits, space->n_floors, err));
+    design_bounds(space, &s->design, t->lower, t->upper);
+    for (int j = 0; j < space->n_var; j++)
+        if (design_is_log(space, j) || design_word(space, j, 0)) {
             t->has_kinds = 1;
-            t->kind[j] = design_is_log(&t->design, j) ? VARIABLE_LOG : VARIABLE_CHOICE;
+            t->kind[j] = design_is_log(space, j) ? VARIABLE_LOG : VARIABLE_CHOICE;
         }
     TRY(set_steps(t, &s->design, err));
 
     /* 4. Processes, which are forked with all of this. */
-    t->isolated.doer = (Doer){.simulator = &HERE, .self = t, .n_var = t->design.n_var};
+    t->isolated.doer = (Doer){.simulator = &HERE, .self = t, .n_var = space->n_var};
     t->isolated.lost = write_lost;
     return s->run.isolate == SWITCH_ON ? isolated_open(&t->isolated, t->n_workers, err) : STATUS_OK;
 }
@@ -540,11 +540,6 @@ const Tower *tower_of(const Problem *p)
 const DesignSpace *tower_design(const Tower *t)
 {
     return &t->design;
-}
-
-int tower_n_floors(const Tower *t)
-{
-    return (int)t->design.n_floors;
 }
 
 size_t tower_n_records(const Tower *t)

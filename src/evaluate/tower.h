@@ -43,7 +43,6 @@ Status tower_space(const Settings *s, DesignSpace *out, Err *err);
 /* The tower of such a problem; NULL: it has another simulator. */
 const Tower *tower_of(const Problem *p);
 
-int tower_n_floors(const Tower *t);
 const DesignSpace *tower_design(const Tower *t);
 size_t tower_n_records(const Tower *t);
 
