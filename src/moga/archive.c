@@ -2,7 +2,6 @@
 
 #include "base/carve.h"
 #include "base/hash.h"
-#include "base/stat.h"
 #include "evaluate/problem.h"
 #include "base/dominance.h"
 
@@ -168,7 +167,7 @@ static Status add_design(Archive *a, size_t row, Err *err)
         memset(a->S + row * m, 0, m * sizeof *a->S);
         set_errors(a, row);
     }
-    if (!a->usable[row] || a->violation[row] > 0.0 || a->kind[row] == KIND_SCREENED)
+    if (a->violation[row] > 0.0 || a->kind[row] == KIND_SCREENED)
         return STATUS_OK;
     if (a->n_replicates > 0) {
         compare_with_front(a, row);

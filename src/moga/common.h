@@ -5,13 +5,11 @@
  * Threads  one */
 #pragma once
 
-#include "evaluate/problem.h"
 #include "moga/archive.h"
 #include "moga/config.h"
 #include "moga/constants.h"
 #include "moga/convergence.h"
 #include "moga/credit.h"
-#include "moga/infill.h"
 #include "moga/pending.h"
 
 typedef struct {
@@ -49,11 +47,4 @@ static inline size_t common_ahead(const SearchConfig *c, size_t asked)
 {
     const size_t least = MIN_OF(config_budget(c) / 8, AHEAD), share = asked / AHEAD, most = MIN_OF(share, 240);
     return c->ahead >= 0 ? (size_t)c->ahead : MAX_OF(most, least);
-}
-
-/* Evaluations that are left to be asked for. */
-static inline size_t common_left(const Common *c)
-{
-    const size_t asked = common_asked(c), end = common_end(c);
-    return end > asked ? end - asked : 0;
 }

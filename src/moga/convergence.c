@@ -28,10 +28,14 @@ Status convergence_shares(const GrowingFront *d, size_t n_cuts, const size_t cut
         double min = INFINITY, max = -INFINITY, least = INFINITY, most = -INFINITY;
         for (size_t i = 0; i < d->n; i++) {
             const double y = value(d, i, k);
-            min = d->on_front[i] ? fmin(min, y) : min;
-            max = d->on_front[i] ? fmax(max, y) : max;
-            least = d->counts[i] ? fmin(least, y) : least;
-            most = d->counts[i] ? fmax(most, y) : most;
+            if (d->on_front[i]) {
+                min = fmin(min, y);
+                max = fmax(max, y);
+            }
+            if (d->counts[i]) {
+                least = fmin(least, y);
+                most = fmax(most, y);
+            }
         }
         const double width = fmax(max - min, WIDTH_MIN * (most - least));
         has_front = has_front && min <= max;

@@ -14,7 +14,6 @@
  * Threads  pure functions on the caller's memory */
 #pragma once
 
-#include "base/pack.h"
 #include "base/status.h"
 
 typedef struct {

@@ -5,9 +5,7 @@
 /* (p + m - 1 over m - 1), SIZE_MAX where it does not fit. */
 static size_t layer_count(size_t n_obj, size_t p)
 {
-    if (p == 0)
-        return 0;
-    size_t n = 1;
+    size_t n = p > 0;
     for (size_t k = 1; k < n_obj; k++) {
         if (n > SIZE_MAX / (p + k))
             return SIZE_MAX;
@@ -68,7 +66,7 @@ static double *write_layer(size_t n_obj, size_t p, double shrink, size_t parts[]
 Status directions_create(Directions *d, size_t n_obj, size_t outer, size_t inner, Err *err)
 {
     const size_t n = directions_count(n_obj, outer, inner);
-    *d = (Directions){.n = n, .n_obj = n_obj, .outer = outer, .inner = inner};
+    *d = (Directions){.n = n, .n_obj = n_obj};
     size_t *parts = calloc(n_obj, sizeof *parts);
     d->W = n < SIZE_MAX / (n_obj * sizeof *d->W) ? calloc(n * n_obj, sizeof *d->W) : NULL;
     if (d->W && parts)

@@ -13,16 +13,16 @@
 
 typedef struct {
     size_t n, n_obj;
-    size_t outer, inner; /* divisions of the two layers; inner 0: one layer */
-    double *W;           /* (n, n_obj) */
+    double *W; /* (n, n_obj) */
 } Directions;
 
-/* Divisions for a population: the largest number of directions that it can fill, but at least one per objective. */
+/* Divisions of the two layers, inner 0: one layer. For a population: the largest number of directions that it can fill,
+ * but at least one per objective. */
 void directions_choose(size_t n_obj, size_t population, size_t *outer, size_t *inner);
 
 Status directions_create(Directions *d, size_t n_obj, size_t outer, size_t inner, Err *err);
 /* n >= n_obj directions as far from each other as can be on the sphere, the axes among them: as dense in the middle as
- * on the border, for any n. Outer and inner are 0. */
+ * on the border, for any n. */
 Status directions_spread(Directions *d, size_t n_obj, size_t n, Err *err);
 void directions_across(const Directions *d, double across[]); /* (n_obj, n) the same at length 1 */
 void directions_free(Directions *d);

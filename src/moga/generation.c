@@ -1,6 +1,5 @@
 #include "moga/state.h"
 
-#include "base/stat.h"
 #include "moga/replication.h"
 #include "moga/variation.h"
 
@@ -14,11 +13,11 @@ size_t generation_samples(const Search *s)
 {
     const SearchConfig *c = s->common.config;
     const LevelCosts cost = s->screening.cost;
-    const size_t n = SCREENED_PER_FINISHED, evals = config_budget(c), given = c->n_given;
+    const size_t n = SCREENED_PER_FINISHED, evals = config_budget(c);
     const size_t planned = cost.whole == 1 ? evals : evals * n * cost.whole / (n * cost.cheap + cost.rest);
     const size_t wanted = INITIAL_PER_VARIABLE * s->common.problem->n_var + INITIAL_OFFSET,
                  half = MAX_OF((planned + 1) / 2, 4), initial = c->initial > 0 ? c->initial : MIN_OF(wanted, half);
-    return given < initial / 2 ? initial - given : initial - initial / 2;
+    return initial - MIN_OF(c->n_given, initial / 2);
 }
 
 /* -- step 6: environmental selection ------------------------------------------------------------------------------- */
@@ -35,11 +34,7 @@ static void renew_population(Search *s, size_t first_new)
         const size_t row = i < n_members ? population->row[i] : first_new + i - n_members;
         if (!a->usable[row])
             continue;
-        if (i < n_members)
-            population_append(pool, population, i);
-        else
-            population_add(pool, a->X + row * a->n_var);
-        const size_t last = pool->n - 1;
+        const size_t last = population_add(pool, a->X + row * a->n_var);
         copy_values(a->n_obj, a->F + row * a->n_obj, pool->F + last * a->n_obj);
         pool->violation[last] = a->violation[row];
         pool->row[last] = row;
@@ -50,6 +45,12 @@ static void renew_population(Search *s, size_t first_new)
 
 /* -- step 1: initial sample ---------------------------------------------------------------------------------------- */
 
+static void add_sample(Search *s, double x[])
+{
+    problem_repair(s->common.problem, x);
+    batch_add(&s->batch, &s->common, x, KIND_SAMPLED, INFILL_KINDS);
+}
+
 static void add_samples(Search *s, size_t n)
 {
     const Problem *p = s->common.problem;
@@ -59,8 +60,7 @@ static void add_samples(Search *s, size_t n)
         double *x = X + i * p->n_var;
         for (size_t d = 0; d < p->n_var; d++)
             x[d] = problem_spread(p, d, x[d]);
-        problem_repair(p, x);
-        batch_add(&s->batch, &s->common, x, KIND_SAMPLED, INFILL_KINDS);
+        add_sample(s, x);
     }
 }
 
@@ -85,8 +85,7 @@ static void add_rest(Search *s)
             x[d] = problem_spread(p, d, ((double)(rest % values) + 0.5) / (double)values);
             rest /= values;
         }
-        problem_repair(p, x);
-        batch_add(&s->batch, &s->common, x, KIND_SAMPLED, INFILL_KINDS);
+        add_sample(s, x);
     }
     s->n_vain = n <= COUNTED_MAX ? VAIN_MAX : s->n_vain;
 }
@@ -116,8 +115,9 @@ static void measure_front(Search *s)
     pareto_archive_list_front(a);
     for (size_t i = 0; i < p->n; i++)
         s->scratch.members[i] = i;
-    const size_t *rows = s->screening.n_front > 0 ? a->expected : a->n_front > 0 ? a->front : s->scratch.members;
-    const size_t n = s->screening.n_front > 0 ? s->screening.n_front : a->n_front > 0 ? a->n_front : p->n;
+    const size_t n_expected = s->screening.n_front;
+    const size_t *rows = n_expected > 0 ? a->expected : a->n_front > 0 ? a->front : s->scratch.members;
+    const size_t n = n_expected > 0 ? n_expected : a->n_front > 0 ? a->n_front : p->n;
     for (int k = 0; k < INFILL_KINDS; k++)
         infill_measure(s->criteria.select[k], n, rows, rows == s->scratch.members ? p->F : a->F);
 }
@@ -157,26 +157,26 @@ Status generation_ask(Search *s, Err *err)
 {
     Common *c = &s->common;
     const Problem *p = c->problem;
+    const int wants_more = s->reason == STOP_NONE, is_first = wants_more && c->generation == 0;
     double *x = s->scratch.samples;
     s->batch.n = 0;
     s->batch.room = screening_room(&s->screening, c, s->batch.size_max);
 
     /* 1. The given designs, moved into the box, and the initial sample; later a batch. */
-    for (size_t i = 0; s->reason == STOP_NONE && c->generation == 0 && i < c->config->n_given; i++) {
+    for (size_t i = 0; is_first && i < c->config->n_given; i++) {
         for (size_t d = 0; d < p->n_var; d++)
             x[d] = fmin(fmax(c->config->given[i * p->n_var + d], p->lower[d]), p->upper[d]);
-        problem_repair(p, x);
-        batch_add(&s->batch, c, x, KIND_SAMPLED, INFILL_KINDS);
+        add_sample(s, x);
     }
-    if (s->reason == STOP_NONE && c->generation == 0)
+    if (is_first)
         add_samples(s, generation_samples(s));
-    else if (s->reason == STOP_NONE && s->population.n < 2)
+    else if (wants_more && s->population.n < 2)
         sample_again(s);
-    else if (s->reason == STOP_NONE)
+    else if (wants_more)
         TRY(choose(s, err));
 
     /* 2. They are asked for. */
-    if (s->reason == STOP_NONE && c->pending.n == 0 && s->batch.room > 0)
+    if (wants_more && c->pending.n == 0 && s->batch.room > 0)
         s->n_vain = s->batch.n > 0 ? 0 : s->n_vain + 1;
     for (size_t i = 0; i < s->batch.n; i++) {
         Question q = s->batch.q[i];
@@ -191,7 +191,7 @@ Status generation_ask(Search *s, Err *err)
     /* 3. How many may be under way when the next group is made: one less than now at most; none of the initial sample,
      * which the first surrogate wants whole, and none where nothing is left to be asked. */
     const size_t now = c->pending.n, ahead = common_ahead(c->config, common_asked(c)), most = now > 0 ? now - 1 : 0;
-    const int waits_for_all = c->generation == 0 || s->reason != STOP_NONE || screening_room(&s->screening, c, 1) == 0;
+    const int waits_for_all = c->generation == 0 || !wants_more || screening_room(&s->screening, c, 1) == 0;
     s->allowed = waits_for_all ? 0 : MIN_OF(ahead, most);
     return STATUS_OK;
 }
@@ -207,7 +207,7 @@ Status generation_enter(Search *s, Err *err)
     while (c->pending.n > s->allowed) {
         const Place *place = pending_at(&c->pending, 0);
         const Question *q = &place->q;
-        const double *x = pending_x(&c->pending, 0), *f = pending_f(&c->pending, 0);
+        const double *x = pending_x(&c->pending, 0), *f = x + c->problem->n_var;
         const int by = q->criterion, is_good = by < INFILL_KINDS && place->ok && violation_of(n_con, f + n_obj) == 0.0;
         if (by < INFILL_KINDS)
             results.designs[by] += 1.0;

@@ -44,19 +44,19 @@ static void layout(void *infill, Carve *c)
 Status infill_create(Infill **out, InfillKind kind, size_t candidates_max, const Directions *vectors,
                      const double aspire[], Err *err)
 {
-    const size_t n_obj = vectors->n_obj;
-    Infill plain = {aspire ? INFILL_HYPERVOLUME : kind, n_obj,           vectors->n, candidates_max,
+    const size_t n_obj = vectors->n_obj, n_dir = vectors->n;
+    Infill plain = {aspire ? INFILL_HYPERVOLUME : kind, n_obj,           n_dir, candidates_max,
                     .normalisation.n_obj = n_obj,       .aspire = aspire};
     Infill *q = *out = carve_object(layout, &plain, sizeof plain);
     if (!q)
         return fail_memory(err, candidates_max, "candidates of infill");
     directions_across(vectors, q->across);
-    for (size_t i = 0; aspire && i < q->n_dir * n_obj; i++)
+    for (size_t i = 0; aspire && i < n_dir * n_obj; i++)
         q->across[i] = exp2(2.0 * (q->across[i] - 0.5));
-    for (size_t r = 0; r < q->n_dir; r++)
-        for (size_t k = 0; k < q->n_obj; k++) {
-            q->unit[r * q->n_obj + k] = q->across[k * q->n_dir + r];
-            q->over[k * q->n_dir + r] = 1.0 / fmax(q->across[k * q->n_dir + r], LEAST);
+    for (size_t r = 0; r < n_dir; r++)
+        for (size_t k = 0; k < n_obj; k++) {
+            q->unit[r * n_obj + k] = q->across[k * n_dir + r];
+            q->over[k * n_dir + r] = 1.0 / fmax(q->across[k * n_dir + r], LEAST);
         }
     return STATUS_OK;
 }
@@ -165,22 +165,22 @@ static double pbi_slope(const Infill *q, const double w[], const double f[], dou
     for (size_t k = 0; k < q->n_obj; k++)
         along += normalised(&q->normalisation, k, f[k]) * w[k];
     for (size_t k = 0; k < q->n_obj; k++) {
-        const double side = normalised(&q->normalisation, k, f[k]) - along * w[k];
-        aside += side * side;
+        slope[k] = normalised(&q->normalisation, k, f[k]) - along * w[k];
+        aside += slope[k] * slope[k];
     }
     aside = sqrt(aside);
-    for (size_t k = 0; k < q->n_obj; k++) { /* the side is at right angles to w, so d aside / d z_k = side_k / aside */
-        const double side = normalised(&q->normalisation, k, f[k]) - along * w[k];
-        slope[k] = (w[k] + (aside > 0.0 ? PBI_THETA * side / aside : 0.0)) / q->normalisation.width[k];
-    }
+    for (size_t k = 0; k < q->n_obj; k++) /* the side is at right angles to w, so d aside / d z_k = side_k / aside */
+        slope[k] = (w[k] + (aside > 0.0 ? PBI_THETA * slope[k] / aside : 0.0)) / q->normalisation.width[k];
     return along + PBI_THETA * aside;
 }
 
 double infill_length(const Infill *q, const double f[])
 {
     double square = 0.0;
-    for (size_t k = 0; k < q->n_obj; k++)
-        square += normalised(&q->normalisation, k, f[k]) * normalised(&q->normalisation, k, f[k]);
+    for (size_t k = 0; k < q->n_obj; k++) {
+        const double z = normalised(&q->normalisation, k, f[k]);
+        square += z * z;
+    }
     return sqrt(square);
 }
 
@@ -202,13 +202,20 @@ double infill_distance(Infill *q, const double f[])
     return nearest;
 }
 
-double infill_gain(Infill *q, const double f[])
+/* Of a design by its values. */
+static double gain_of(const Infill *q, const double value[])
 {
     double gain = 0.0;
-    values_of(q, f, q->row);
     for (size_t r = 0; r < q->n_dir; r++)
-        gain += fmax(q->best_value[r] - q->row[r], 0.0);
+        if (value[r] < q->best_value[r])
+            gain += q->best_value[r] - value[r];
     return gain;
+}
+
+double infill_gain(Infill *q, const double f[])
+{
+    values_of(q, f, q->row);
+    return gain_of(q, q->row);
 }
 
 void infill_offer(Infill *q, size_t n, const double F[], const double violation[], const double uncertainty[],
@@ -227,12 +234,13 @@ void infill_offer(Infill *q, size_t n, const double F[], const double violation[
 /* Feasible before infeasible where there is no chance to weigh gains with, then gain, violation, uncertainty. */
 static int is_better(const Infill *q, size_t a, size_t b)
 {
-    if (!q->chance && q->violation[a] != q->violation[b])
-        return q->violation[a] < q->violation[b];
+    const double *violation = q->violation;
+    if (!q->chance && violation[a] != violation[b])
+        return violation[a] < violation[b];
     if (q->gain[a] != q->gain[b])
         return q->gain[a] > q->gain[b];
-    if (q->violation[a] != q->violation[b])
-        return q->violation[a] < q->violation[b];
+    if (violation[a] != violation[b])
+        return violation[a] < violation[b];
     return q->uncertainty[a] > q->uncertainty[b];
 }
 
@@ -243,11 +251,7 @@ size_t infill_pick(Infill *q, unsigned char allowed[])
     for (size_t i = 0; i < q->n; i++) {
         if (!allowed[i] || (best != SIZE_MAX && !is_better(q, i, best)))
             continue;
-        double gain = 0.0;
-        for (size_t r = 0; r < q->n_dir; r++)
-            if (q->value[i * q->n_dir + r] < q->best_value[r])
-                gain += q->best_value[r] - q->value[i * q->n_dir + r];
-        q->gain[i] = gain * (q->chance ? q->chance[i] : 1.0);
+        q->gain[i] = gain_of(q, q->value + i * q->n_dir) * (q->chance ? q->chance[i] : 1.0);
         if (best == SIZE_MAX || is_better(q, i, best))
             best = i;
     }

@@ -70,10 +70,6 @@ Status levels_fit(Levels **out, const Problem *p, int is_biased, size_t n, size_
         status = rbf_create(&q->rest, n, q->n_dim, n_out, err);
         THEN(status, rbf_tune(q->rest, n, q->U, q->D, NULL, err));
     }
-    if (status != STATUS_OK) {
-        levels_free(q);
-        *out = NULL;
-    }
     return status;
 }
 

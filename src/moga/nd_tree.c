@@ -52,7 +52,7 @@ static void node_free(Node *q)
 static void note_removed(NdTree *t, size_t row)
 {
     if (t->n_removed == t->n_removed_max) {
-        const size_t wider = t->n_removed_max > 0 ? 2 * t->n_removed_max : LEAF_MAX + 4;
+        const size_t wider = 2 * t->n_removed_max + LEAF_MAX;
         t->removed = widened(t->removed, wider, sizeof *t->removed, &t->lacks_memory);
         if (t->lacks_memory)
             return;
@@ -211,7 +211,7 @@ static void split(NdTree *t, Node *q)
     while (seed && is_whole && q->n_child < t->n_children) {
         double farthest = 0.0;
         is_whole = (q->child[q->n_child] = make_leaf(t, seed)) != NULL;
-        q->n_child += is_whole != 0;
+        q->n_child += is_whole;
         seed = NULL;
         for (size_t i = 0; is_whole && i < q->n; i += step) {
             double nearest = INFINITY;
@@ -247,12 +247,11 @@ Status nd_tree_insert(NdTree *t, const double F[], size_t row, NdChange *change,
     const double *f = F + row * m;
     t->F = F;
     t->n_removed = 0;
-    *change = (NdChange){.is_in = !t->root || !is_dominated(t, t->root, f)};
-    if (change->is_in && t->root)
+    const int is_in = !t->root || !is_dominated(t, t->root, f);
+    if (is_in && t->root)
         t->root = remove_dominated(t, t->root, f);
-    change->n_removed = t->n_removed;
-    change->removed = t->removed;
-    if (!change->is_in)
+    *change = (NdChange){is_in, t->n_removed, t->removed};
+    if (!is_in)
         return STATUS_OK;
 
     /* It goes to the leaf whose bounds have the nearest middle, in widths of all points. */

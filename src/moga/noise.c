@@ -1,7 +1,5 @@
 #include "moga/noise.h"
 
-#include <math.h>
-
 NoiseModel noise_fit(size_t n, const size_t rows[], const size_t replicates[], size_t n_obj, size_t k,
                      const double mean[], const double S[])
 {

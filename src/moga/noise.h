@@ -13,7 +13,7 @@
  * Source   Smyth, Stat. Appl. Genet. Mol. Biol. 3 (2004) 3 (variances moderated by a common one) */
 #pragma once
 
-#include <stddef.h>
+#include "base/status.h"
 
 typedef struct {
     double sd; /* unit of the objective, or relative */

@@ -3,8 +3,6 @@
 #include <float.h>
 #include <lapacke.h>
 
-#include "base/status.h"
-
 /* Best and worst of each objective; width = worst - best, 1 where all are equal. */
 void normalisation_fit_range(Normalisation *q, size_t n, const size_t list[], const double F[])
 {

@@ -8,8 +8,7 @@
  * Source   Deb and Jain (see moga/search.h), section IV.C. */
 #pragma once
 
-#include <math.h>
-#include <stddef.h>
+#include "base/status.h"
 
 typedef struct {
     size_t n_obj;

@@ -57,7 +57,7 @@ static void breed(Offspring *o, const Common *c, Population *population, uint32_
         crossover_sbx(&change, n_var, lower, upper, SBX_ETA, parent, parent + n_var, child, child + n_var);
         cross_choices(&change, p, mother, father, child, child + n_var);
         for (int i = 0; i < 2; i++, child += n_var) {
-            memcpy(before, child, n_var * sizeof *child);
+            copy_values(n_var, child, before);
             mutate_polynomial(&change, n_var, lower, upper, 1.0 / (double)n_var, MUTATION_ETA, child);
             mutate_discrete(&change, p, before, child);
             for (size_t d = 0; d < n_var; d++)
@@ -125,10 +125,11 @@ static void add_descended(Offspring *o, const Breeding *w)
     /* 2. The ends of the descents. */
     surrogate_descend(w->surrogate, &c->archive, w->criteria->select, first, n, vector, X);
     for (size_t i = 0; i < n; i++) {
-        problem_repair(p, X + i * p->n_var);
-        population_add(&o->members, X + i * p->n_var);
+        double *x = X + i * p->n_var;
+        problem_repair(p, x);
+        population_add(&o->members, x);
         if (p->kind)
-            add_swaps(o, p, &random, X + i * p->n_var);
+            add_swaps(o, p, &random, x);
     }
 }
 
@@ -144,8 +145,7 @@ static void add_probes(Offspring *o, const Breeding *w)
     for (size_t i = 0; i < o->n_unpicked; i++) {
         const size_t d = random_below(&random, p->n_var), vector = random_below(&random, w->criteria->vectors.n);
         double *x = o->children;
-        memcpy(x, c->archive.X + infill_best(w->criteria->select[i % INFILL_KINDS], vector) * p->n_var,
-               p->n_var * sizeof *x);
+        copy_values(p->n_var, c->archive.X + infill_best(w->criteria->select[i % INFILL_KINDS], vector) * p->n_var, x);
         x[d] = problem_spread(p, d, random_uniform(&random));
         problem_repair(p, x);
         population_add(&o->members, x);

@@ -5,7 +5,6 @@
 #pragma once
 
 #include "moga/batch.h"
-#include "moga/population.h"
 #include "moga/selection.h"
 #include "moga/surrogate.h"
 

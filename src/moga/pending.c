@@ -3,37 +3,26 @@
 #include <float.h>
 
 #include "base/carve.h"
-#include "base/stat.h"
 
 static size_t width(const Pending *p)
 {
     return p->n_var + p->n_obj + p->n_con;
 }
 
-static double *numbers(const Pending *p, size_t i)
-{
-    return p->number + (p->head + i) * width(p);
-}
-
-const Place *pending_at(const Pending *p, size_t i)
+Place *pending_at(const Pending *p, size_t i)
 {
     return &p->place[p->head + i];
 }
 
-const double *pending_x(const Pending *p, size_t i)
+double *pending_x(const Pending *p, size_t i)
 {
-    return numbers(p, i);
-}
-
-const double *pending_f(const Pending *p, size_t i)
-{
-    return numbers(p, i) + p->n_var;
+    return p->number + (p->head + i) * width(p);
 }
 
 void pending_free(Pending *p)
 {
     for (size_t i = 0; i < p->n; i++)
-        free(p->place[p->head + i].parts);
+        free(pending_at(p, i)->parts);
     free(p->place);
     free(p->number);
 }
@@ -56,9 +45,8 @@ Status pending_add(Pending *p, const Question *q, Err *err)
         copy_values(p->n * width(p), p->number + p->head * width(p), p->number);
         p->head = 0;
     }
-    p->place[p->head + p->n] = (Place){.q = *q};
-    copy_values(p->n_var, q->x, numbers(p, p->n));
-    p->n++;
+    *pending_at(p, p->n) = (Place){.q = *q};
+    copy_values(p->n_var, q->x, pending_x(p, p->n++));
     p->n_of_kind[q->kind]++;
     return STATUS_OK;
 }
@@ -78,12 +66,12 @@ Status pending_tell(Pending *p, size_t number, int ok, const void *parts, size_t
     const size_t i = number - p->n_entered - 1;
     if (number <= p->n_entered || i >= p->n_handed || pending_at(p, i)->is_told)
         return fail(err, STATUS_INTERNAL, "design %zu is told, but was not asked for, or is told already", number);
-    Place *place = &p->place[p->head + i];
+    Place *place = pending_at(p, i);
     if (parts) {
         TRY_ROOM(place->parts, size, "a part of an evaluation", err);
         memcpy(place->parts, parts, size);
     }
-    *f = numbers(p, i) + p->n_var;
+    *f = pending_x(p, i) + p->n_var;
     place->ok = ok != 0;
     place->is_told = 1;
     while (p->n_known < p->n && pending_at(p, p->n_known)->is_told)
@@ -93,8 +81,9 @@ Status pending_tell(Pending *p, size_t number, int ok, const void *parts, size_t
 
 void pending_enter(Pending *p)
 {
-    free(p->place[p->head].parts);
-    p->n_of_kind[p->place[p->head].q.kind]--;
+    const Place *first = pending_at(p, 0);
+    free(first->parts);
+    p->n_of_kind[first->q.kind]--;
     p->head++;
     p->n--;
     p->n_handed--;
@@ -114,7 +103,7 @@ void pending_pack(Pending *p, Pack *pack)
 {
     size_t n = p->n;
     double *x = calloc(p->n_var, sizeof *x);
-    pack->faulty = pack->faulty || !x;
+    pack->faulty |= !x;
     pack_size(pack, &n, UINT32_MAX);
     for (size_t i = 0; i < n && !pack->faulty; i++) {
         Question q = {.x = x};

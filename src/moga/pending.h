@@ -7,7 +7,6 @@
 #pragma once
 
 #include "base/pack.h"
-#include "evaluate/evaluation.h"
 #include "evaluate/problem.h"
 #include "moga/question.h"
 
@@ -32,10 +31,10 @@ typedef struct {
 
 void pending_free(Pending *p);
 
-/* Place i in the order of asking, and its numbers; they hold until the next question is added. */
-const Place *pending_at(const Pending *p, size_t i);
-const double *pending_x(const Pending *p, size_t i);
-const double *pending_f(const Pending *p, size_t i);
+/* Place i in the order of asking, and its x, behind which are minimised f and g where it is told; they hold until the
+ * next question is added. */
+Place *pending_at(const Pending *p, size_t i);
+double *pending_x(const Pending *p, size_t i);
 
 /* One more question, of which x is copied. */
 Status pending_add(Pending *p, const Question *q, Err *err);

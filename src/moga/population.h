@@ -7,7 +7,6 @@
 #pragma once
 
 #include "base/pack.h"
-#include "base/status.h"
 #include "moga/archive.h"
 
 static const size_t PREDICTED = SIZE_MAX;

@@ -67,7 +67,8 @@ static void weigh_designs(const Archive *a, const Criteria *q, size_t importance
 void replication_add(const Common *c, const Criteria *q, Batch *b)
 {
     const Archive *a = &c->archive;
-    const size_t due = replicates_due(c, common_asked(c) + b->n), room = MIN_OF(b->size_max, common_left(c)),
+    const size_t asked = common_asked(c), end = common_end(c), left = end > asked ? end - asked : 0,
+                 due = replicates_due(c, asked + b->n), room = MIN_OF(b->size_max, left),
                  limit = MIN_OF(room, b->n + due);
     size_t *importance = a->scratch.row;
     int extremes_alone = 0;

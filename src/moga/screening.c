@@ -17,7 +17,6 @@
 
 #include "base/carve.h"
 #include "base/hypervolume.h"
-#include "base/stat.h"
 #include "moga/normalisation.h"
 
 void screening_begin(Screening *q, const Common *c)
@@ -155,10 +154,11 @@ Status screening_enter(Screening *q, Common *c, const Answer *answer, Err *err)
     if (answer->kind == KIND_SCREENED)
         TRY(add_screened(q, c, answer, err));
     else if (i < q->n) {
-        q->design[i].finished = c->archive.n;
+        Screened *d = &q->design[i];
+        d->finished = c->archive.n;
         q->n_finished++;
-        free(q->design[i].parts);
-        q->design[i].parts = NULL;
+        free(d->parts);
+        d->parts = NULL;
     }
     return pareto_archive_insert(&c->archive, answer->x, answer->f, answer->f + c->problem->n_obj, answer->ok,
                                  answer->kind, answer->generation, err);
@@ -277,7 +277,7 @@ static Status find_front(Screening *q, const Common *c, Err *err)
             continue;
         status = nd_tree_insert(tree, a->Y, row, &change, err);
         a->expected[row] = change.is_in;
-        for (size_t i = 0; change.is_in && i < change.n_removed; i++)
+        for (size_t i = 0; i < change.n_removed; i++)
             a->expected[change.removed[i]] = 0;
     }
     for (size_t row = 0; row < a->n; row++)

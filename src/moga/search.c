@@ -139,25 +139,21 @@ Status search_tell(Search *s, size_t number, const Evaluation *e, const void *pa
 
 /* -- life ---------------------------------------------------------------------------------------------------------- */
 
-static Status check(const Problem *p, const SearchConfig *c, Err *err)
+/* One that is resumed behind a step may have other limits now, and with another stop_after not be over any more. */
+static Status begin(Search *s, const SearchStart *start, Err *err)
 {
-    if (p->n_var < 1 || p->n_obj < 1)
-        return bad_data(err, "search: %zu variables and %zu objectives, wanted at least one of each", p->n_var,
-                        p->n_obj);
+    const SearchConfig *c = s->common.config;
+    const Problem *p = s->common.problem;
     if (c->population < 4 || (c->initial > 0 && c->initial < 4) || c->max_evals < 1 || c->surrogate_max < 4)
         return bad_data(err,
                         "search: population %zu, initial %zu and surrogate_max %zu must be 4 at least, max_evals %zu 1",
                         c->population, c->initial, c->surrogate_max, c->max_evals);
-    for (size_t d = 0; d < p->n_var; d++)
-        if (!(p->lower[d] <= p->upper[d]) || !isfinite(p->lower[d]) || !isfinite(p->upper[d]))
-            return bad_data(err, "search: variable %zu has bounds %g and %g, lower must not exceed upper", d + 1,
-                            p->lower[d], p->upper[d]);
-    return STATUS_OK;
-}
-
-/* One that is resumed behind a step may have other limits now, and with another stop_after not be over any more. */
-static Status begin(Search *s, const SearchStart *start, Err *err)
-{
+    for (size_t d = 0; d < p->n_var; d++) {
+        const double lower = p->lower[d], upper = p->upper[d];
+        if (!(lower <= upper) || !isfinite(lower) || !isfinite(upper))
+            return bad_data(err, "search: variable %zu has bounds %g and %g, lower must not exceed upper", d + 1, lower,
+                            upper);
+    }
     TRY(state_create(s, err));
     s->is_behind_step = 1;
     if (!start)
@@ -166,7 +162,7 @@ static Status begin(Search *s, const SearchStart *start, Err *err)
     if (!s->is_behind_step || s->common.archive.n == 0)
         return STATUS_OK;
     exchange(s);
-    if (s->common.convergence.after != s->common.config->stop_after)
+    if (s->common.convergence.after != c->stop_after)
         s->common.convergence = (Convergence){0};
     search_stop(s, reason_to_stop(s));
     return STATUS_OK;
@@ -175,17 +171,9 @@ static Status begin(Search *s, const SearchStart *start, Err *err)
 Status search_create(Search **out, const Problem *problem, const SearchConfig *config, const SearchStart *start,
                      Err *err)
 {
-    *out = NULL;
-    TRY(check(problem, config, err));
-    Search *s;
-    TRY_ROOM(s, 1, "a search", err);
-    s->common = (Common){.problem = problem, .config = config};
-    const Status status = begin(s, start, err);
-    if (status == STATUS_OK)
-        *out = s;
-    else
-        search_free(s);
-    return status;
+    TRY_ROOM(*out, 1, "a search", err);
+    (*out)->common = (Common){.problem = problem, .config = config};
+    return begin(*out, start, err);
 }
 
 void search_free(Search *s)

@@ -60,7 +60,8 @@ const char *stop_reason_words(StopReason reason);
 typedef struct Search Search;
 
 /* start NULL: from the beginning; else problem and configuration must be those of the search that wrote the state, but
- * for the limits (max_evals with planned_evals set). A state that does not fit is STATUS_BAD_DATA. */
+ * for the limits (max_evals with planned_evals set). A state that does not fit is STATUS_BAD_DATA. Where it fails *out
+ * is what there is of it, for search_free. */
 Status search_create(Search **out, const Problem *problem, const SearchConfig *config, const SearchStart *start,
                      Err *err);
 void search_free(Search *s); /* NULL is fine */

@@ -5,7 +5,6 @@
  * Threads  one; predictions of the surrogate use several */
 #pragma once
 
-#include "base/pack.h"
 #include "moga/offspring.h"
 #include "moga/screening.h"
 

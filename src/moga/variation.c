@@ -106,7 +106,7 @@ void mutate_discrete(Random *r, const Problem *p, const double before[], double 
 void step_discrete(Random *r, const Problem *p, size_t d, const double from[], double x[])
 {
     const double less = problem_kind(p, d) == VARIABLE_STEPPED ? 1e-9 * (p->upper[d] - p->lower[d]) : 1.0;
-    memcpy(x, from, p->n_var * sizeof *x);
+    copy_values(p->n_var, from, x);
     x[d] += random_uniform(r) < 0.5 ? less : -less;
     mutate_discrete(r, p, from, x);
     problem_repair(p, x);

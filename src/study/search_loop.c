@@ -68,12 +68,12 @@ Status search_run(const Problem *problem, const SearchConfig *config, const Sear
 {
     Loop l = {.problem = problem, .config = config, .start = clock_seconds()};
     *reason = STOP_NONE;
-    TRY(search_create(&l.search, problem, config, start, err));
+    Status status = search_create(&l.search, problem, config, start, err);
     if (start) {
         l.n_known = start->n_later;
         l.known = start->row + (start->each ? 0 : start->n);
     }
-    Status status = queue_open(&l.queue, problem, err);
+    THEN(status, queue_open(&l.queue, problem, err));
     THEN(status, run(&l, observe, user, reason, err));
     queue_close(l.queue);
     search_free(l.search);
