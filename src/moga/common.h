@@ -45,6 +45,6 @@ static inline size_t common_asked(const Common *c)
  * which is predicted for every group. */
 static inline size_t common_ahead(const SearchConfig *c, size_t asked)
 {
-    const size_t least = MIN_OF(config_budget(c) / 8, AHEAD), share = asked / AHEAD, most = MIN_OF(share, 240);
+    const size_t least = MIN_OF(config_budget(c) / 8, AHEAD), share = 2 * asked / AHEAD, most = MIN_OF(share, 240);
     return c->ahead >= 0 ? (size_t)c->ahead : MAX_OF(most, least);
 }

@@ -16,7 +16,7 @@ enum { BATCH_ARCHIVE_SHARE = 40 };   /* evaluations / this, where that is more *
 
 /* -- common.h: look-ahead: questions whose answers are not known yet when the next ones are made ------------------- */
 
-enum { AHEAD = 24 }; /* at least, and questions / this where that is more */
+enum { AHEAD = 32 }; /* at least, and questions / (this / 2) where that is more */
 
 /* -- state.c: reference vectors of infill ------------------------------------------------------------------------- */
 
