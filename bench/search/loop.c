@@ -1,15 +1,13 @@
 #include "bench/search/loop.h"
 
 #include <float.h>
-#include <math.h>
 
 #include "api/search_config.h"
 #include "base/carve.h"
 #include "base/dominance.h"
 #include "base/hypervolume.h"
-#include "base/stat.h"
 #include "evaluate/adapter.h"
-#include "moga/surrogate.h"
+#include "moga/population.h"
 #include "study/search_loop.h"
 #include "moga/selection.h"
 #include "moga/variation.h"
@@ -123,13 +121,15 @@ static Status simulate(Loop *l, size_t n, Err *err)
     const size_t n_var = l->problem->n_var, n_obj = l->problem->n_obj;
     TRY(queue_evaluate(l->queue, n, l->new_X, 0, l->new_F, NULL, l->ok, err));
     for (size_t i = 0; i < n; i++) {
+        const double *x = l->new_X + i * n_var, *f = l->new_F + i * n_obj;
         if (l->curve.volume)
-            curve_add(&l->curve, l->new_F + i * n_obj, l->ok[i]);
+            curve_add(&l->curve, f, l->ok[i]);
         if (!l->ok[i])
             continue;
-        memcpy(l->X + l->n * n_var, l->new_X + i * n_var, n_var * sizeof *l->X);
-        memcpy(l->F + l->n * n_obj, l->new_F + i * n_obj, n_obj * sizeof *l->F);
-        surrogate_coordinates(l->problem, l->X + l->n * n_var, l->U + l->n * n_var);
+        copy_values(n_var, x, l->X + l->n * n_var);
+        copy_values(n_obj, f, l->F + l->n * n_obj);
+        for (size_t d = 0; d < n_var; d++)
+            l->U[l->n * n_var + d] = problem_to_unit(l->problem, d, x[d]);
         l->n++;
     }
     return STATUS_OK;
@@ -186,7 +186,8 @@ static double predict(Loop *l, size_t i)
 {
     const size_t n_obj = l->problem->n_obj;
     double worst = 0.0;
-    surrogate_coordinates(l->problem, l->members.X + i * l->problem->n_var, l->u);
+    for (size_t d = 0; d < l->problem->n_var; d++)
+        l->u[d] = problem_to_unit(l->problem, d, l->members.X[i * l->problem->n_var + d]);
     rbf_eval(l->rbf, 1, l->u, l->members.F + i * n_obj, l->e);
     for (size_t k = 0; k < n_obj; k++)
         worst = fmax(worst, l->e[k] / l->range[k]);

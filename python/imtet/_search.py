@@ -92,7 +92,7 @@ class Search(library.Handle, Tabular):
     start : array_like, optional
         (n, variables) initial designs.
     **settings
-        Settings of [search] as `imtet settings search` lists them: population=40, stop_after=300, ahead=24 (designs
+        Settings of [search] as `imtet settings search` lists them: population=40, stop_after=300, ahead=32 (designs
         that may be under way at once, the largest batch), aspire="f1 0.5,f2 3" (objectives are f1, f2, ...).
 
     Attributes

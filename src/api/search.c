@@ -53,6 +53,8 @@ static Status advance(imtet_search *s, Err *err)
         const size_t row = q.number - 1;
         if (row == s->table.n)
             status = handle_add(s, q.x, err);
+        else if (row > s->table.n) /* there was no memory for the one before */
+            status = fail(err, STATUS_INTERNAL, "design %zu was never asked for", q.number);
         if (status != STATUS_OK)
             break;
         Evaluation *e = &s->table.row[row];

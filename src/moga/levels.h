@@ -16,8 +16,8 @@
 
 typedef struct Levels Levels;
 
-/* x (n): designs (n_var) each; cheap, whole (n, n_out). n > 0. Where it fails *out is what there is of
- * it, for levels_free. */
+/* x (n): designs (n_var) each; cheap, whole (n, n_out). n > 0. Where it fails *out is what there is of it, for
+ * levels_free. */
 Status levels_fit(Levels **out, const Problem *p, int is_biased, size_t n, size_t n_out, const double *const x[],
                   const double cheap[], const double whole[], Err *err);
 void levels_free(Levels *q); /* NULL is fine */

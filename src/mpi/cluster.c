@@ -79,7 +79,7 @@ int message_receive(int from, int tag, Message *m)
     if (!there)
         return 0;
     MPI_Get_count(&about, MPI_BYTE, &n);
-    *m = (Message){about.MPI_SOURCE, about.MPI_TAG, n, malloc(n + 1)};
+    *m = (Message){about.MPI_SOURCE, about.MPI_TAG, n, malloc((size_t)n + 1)};
     if (!m->bytes)
         MPI_Abort(MPI_COMM_WORLD, status_exit_code(STATUS_NO_MEMORY));
     MPI_Mrecv(m->bytes, n, MPI_BYTE, &message, &about);

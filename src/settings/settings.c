@@ -307,7 +307,7 @@ static const Option OPTIONS[] = {
     CHOICE(search.surrogate, SurrogateUse, SURROGATE_USE_LIST, "on", "off: evolutionary search without a surrogate"),
     WHOLE(search.ahead, "auto", 0, 1e4,
           "batch size: designs that may be under way when the next ones are chosen, so that no worker waits; raise it "
-          "above the number of workers. auto: a 24th of the designs so far, at least 24 (or an eighth of max_evals, "
+          "above the number of workers. auto: a 16th of the designs so far, at least 32 (or an eighth of max_evals, "
           "if less), at most 240; 0: one by one",
           .words = "auto"),
     CHOICE(search.fidelity, Fidelity, FIDELITY_LIST, "off",
