@@ -2,7 +2,7 @@
 
 #include "base/random.h"
 
-/* (p + m - 1 over m - 1), SIZE_MAX where it does not fit. */
+/* (p + m - 1 over m - 1), but 0 for p = 0, which is no layer; SIZE_MAX where it does not fit. */
 static size_t layer_count(size_t n_obj, size_t p)
 {
     size_t n = p > 0;

@@ -139,7 +139,8 @@ Status search_tell(Search *s, size_t number, const Evaluation *e, const void *pa
 
 /* -- life ---------------------------------------------------------------------------------------------------------- */
 
-/* One that is resumed behind a step may have other limits now, and with another stop_after not be over any more. */
+/* Checks what it is made of. One that is resumed behind a step may have other limits now, and with another stop_after
+ * not be over any more. */
 static Status begin(Search *s, const SearchStart *start, Err *err)
 {
     const SearchConfig *c = s->common.config;
