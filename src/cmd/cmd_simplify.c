@@ -95,33 +95,34 @@ static Status fail_unmet(const Improve *m, Err *err)
     const Schema *s = &m->run.schema;
     const EvaluationTable *path = &m->result.designs;
     const Evaluation *start = &path->row[0], *last = &path->row[path->n - 1];
+    const int breaks_limits = last->violation > start->violation;
     char lost[200] = "", keep[200] = "";
     double g[LIMITS_MAX];
     Limits limits;
     for (size_t k = 0; k < s->n_obj; k++) {
-        const double may = m->config.slack[k], sense = schema_objective(s, k)->sense;
-        const double loses = sense * (last->f[k] - start->f[k]) / fmax(fabs(start->f[k]), 1e-300);
+        const Column *objective = schema_objective(s, k);
+        const double may = m->config.slack[k];
+        const double loses = objective->sense * (last->f[k] - start->f[k]) / fmax(fabs(start->f[k]), 1e-300);
         const size_t n = strlen(lost), n_keep = strlen(keep);
         if (!isfinite(may))
             continue;
         if (loses > may)
             snprintf(lost + n, sizeof lost - n, "%s%s loses %.2g %% (%.2g %% may be lost)", n ? ", " : "",
-                     schema_objective(s, k)->name, 100 * loses, 100 * may);
-        snprintf(keep + n_keep, sizeof keep - n_keep, "%s%s=%.4g", n_keep ? "," : "", schema_objective(s, k)->name,
+                     objective->name, 100 * loses, 100 * may);
+        snprintf(keep + n_keep, sizeof keep - n_keep, "%s%s=%.4g", n_keep ? "," : "", objective->name,
                  fmax(may, ceil(1e3 * loses) / 1e3));
     }
     TRY(limits_read(&limits, s, m->run.settings->search.limits, err));
     limits_apply(&limits, s->n_obj, last, g);
-    for (size_t i = 0; i < limits.n && last->violation > start->violation; i++) {
+    for (size_t i = 0; i < limits.n && breaks_limits; i++) {
         const size_t n = strlen(lost), r = limits.limit[i].result;
         if (g[i] > 0)
             snprintf(lost + n, sizeof lost - n, "%s%s misses its limit by %.2g %%", n ? ", " : "",
                      s->column[s->n_var + r].name, 100 * g[i]);
     }
     return fail(err, STATUS_UNMET, "%s: the best design on these steps is design %ld, but %s; %s%s", m->run.folder,
-                m->id, lost,
-                last->violation > start->violation ? "take finer steps or more plates" : "this would do: --keep ",
-                last->violation > start->violation ? "" : keep);
+                m->id, lost, breaks_limits ? "take finer steps or more plates" : "this would do: --keep ",
+                breaks_limits ? "" : keep);
 }
 
 static Status work(const Args *args, Improve *m, Err *err)

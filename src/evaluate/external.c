@@ -37,10 +37,9 @@ static size_t write_request(void *self, const Worker *w, char *request)
         const Task *task = &w->task[i];
         to += sprintf(to, "%s{\"id\":%ld,\"x\":[", i > 0 ? "," : w->n > 1 ? "[" : "", task->id);
         for (size_t d = 0; d < e->n_var; d++)
-            if (e->kind && kinds_word(e->kinds, d, task->x[d], word))
-                to += sprintf(to, "%s\"%s\"", d ? "," : "", word);
-            else
-                to += sprintf(to, "%s%.17g", d ? "," : "", task->x[d]);
+            to += e->kind && kinds_word(e->kinds, d, task->x[d], word)
+                      ? sprintf(to, "%s\"%s\"", d ? "," : "", word)
+                      : sprintf(to, "%s%.17g", d ? "," : "", task->x[d]);
         to += sprintf(to, "]}");
     }
     to += sprintf(to, "%s\n", w->n > 1 ? "]" : "");

@@ -163,14 +163,13 @@ static inline size_t steps_nearest(const Steps *s, double x)
     return i;
 }
 
-/* Into the set of designs that can be built; 0 has no sign, as in the run that it is stored in. */
+/* Into the box and the set of designs that can be built; 0 has no sign, as in the run that it is stored in. */
 static inline void problem_repair(const Problem *p, double x[])
 {
     for (size_t d = 0; d < p->n_var; d++) {
-        if (problem_kind(p, d) == VARIABLE_STEPPED)
-            x[d] = steps_at(&p->steps[d], steps_nearest(&p->steps[d], x[d]));
-        else if (problem_is_discrete(p, d))
-            x[d] = fmin(fmax(round(x[d]), p->lower[d]), p->upper[d]);
+        const double whole = problem_is_discrete(p, d) ? round(x[d]) : x[d];
+        x[d] = problem_kind(p, d) == VARIABLE_STEPPED ? steps_at(&p->steps[d], steps_nearest(&p->steps[d], x[d]))
+                                                      : fmin(fmax(whole, p->lower[d]), p->upper[d]);
         x[d] += 0.0;
     }
     if (p->repair)
@@ -185,6 +184,12 @@ static inline double problem_to_unit(const Problem *p, size_t d, double x)
         return 0.0;
     return problem_kind(p, d) == VARIABLE_LOG ? (log(x) - log(lower)) / (log(upper) - log(lower))
                                               : (x - lower) / (upper - lower);
+}
+
+static inline void problem_to_cube(const Problem *p, const double x[], double u[])
+{
+    for (size_t d = 0; d < p->n_var; d++)
+        u[d] = problem_to_unit(p, d, x[d]);
 }
 
 static inline double problem_from_unit(const Problem *p, size_t d, double u)

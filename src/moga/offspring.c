@@ -62,7 +62,7 @@ static void breed(Offspring *o, const Common *c, Population *population, uint32_
             mutate_discrete(&change, p, before, child);
             for (size_t d = 0; d < n_var; d++)
                 if (problem_kind(p, d) == VARIABLE_LOG)
-                    child[d] = fmin(fmax(exp(child[d]), p->lower[d]), p->upper[d]);
+                    child[d] = exp(child[d]);
         }
     }
     for (size_t i = 0; i < n; i++) {

@@ -80,13 +80,12 @@ static Status run_nlopt(Improver *m, double size, Err *err)
         return fail(err, STATUS_NO_MEMORY, "no memory for polishing");
     nlopt_set_lower_bounds1(d.opt, 0.0);
     nlopt_set_upper_bounds1(d.opt, 1.0);
-    for (unsigned j = 0; j < n_var; j++) {
-        m->at[j] = problem_to_unit(p, j, m->x[j]);
+    problem_to_cube(p, m->x, m->at);
+    for (unsigned j = 0; j < n_var; j++)
         if (problem_is_discrete(p, j)) {
             nlopt_set_lower_bound(d.opt, j, m->at[j]);
             nlopt_set_upper_bound(d.opt, j, m->at[j]);
         }
-    }
     nlopt_set_initial_step1(d.opt, size * STEP);
     nlopt_set_xtol_rel(d.opt, 1e-6);
     nlopt_set_ftol_abs(d.opt, 0.1 * m->gain_min); /* of one step, of which a descent has many */
