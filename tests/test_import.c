@@ -171,8 +171,8 @@ TEST(a_script_that_fails_after_its_analysis_is_refused_where_it_goes_on_building
         assert_words(s.err, REST[i][1] ? REST[i][1] : "on,");
     }
     write_in_place("later.tcl", "eigen 1\nexpr [nodeDisp 3 1] +\n");
-    write_in_place("model.tcl", brief("%ssource later.tcl\nmass 3 1 1 1\n", PORTAL));
-    expect(65, "line 21 goes on", "building @/model.tcl --set building.units=kip_in");
+    write_in_place("model.ops", brief("%ssource later.tcl\nmass 3 1 1 1\n", PORTAL));
+    expect(65, "line 21 goes on", "building @/model.ops --set building.units=kip_in");
 }
 
 TEST(whatever_is_not_read_is_refused_with_its_line)
@@ -233,7 +233,7 @@ TEST(whatever_is_not_read_is_refused_with_its_line)
         assert_refused(building_load(&(Building){0}, &o, &err), STATUS_BAD_DATA, BAD[i][1]);
     }
     write_in_place("model.tcl", PORTAL);
-    expect(65, "building.units: an OpenSees model says none; set it to N_m_kg", "building @/model.tcl");
+    expect(65, "model.tcl says none; set it to N_m_kg", "building @/model.tcl");
     expect(65, "set it to N_m_kg", "building @/model.tcl --set building.units=kN_m_kg");
     expect(66, "nowhere.tcl: there is no such file", "building nowhere.tcl"); /* before it asks for units */
     write_in_place("other.ini", "[problem]\nkind = external\ncommand = true\n");

@@ -112,7 +112,7 @@ int frame_floor_node(const Frame *f, int floor);
 int frame_followed(const Frame *f, int node, int dof);
 void frame_free(Frame *f);
 
-/* Is the model a frame: a folder that holds nodes.csv, guyan, or an OpenSees model, a file that ends in .tcl? */
+/* Is the model a frame: a folder that holds nodes.csv, guyan, or an OpenSees model, a .tcl or .ops file? */
 int frame_is(const char *model);
 int frame_reads(const char *name); /* from its folder */
 Status frame_read(Frame *f, const BuildingOptions *o, Err *err);

@@ -136,25 +136,23 @@ int frame_reads(const char *name)
 
 int frame_is(const char *model)
 {
-    return text_ends(model, ".tcl") || model_has(model, SHEETS[0].file);
+    return text_ends(model, ".tcl") || text_ends(model, ".ops") || model_has(model, SHEETS[0].file);
 }
 
 Status frame_read(Frame *f, const BuildingOptions *o, Err *err)
 {
     const char *model = o->model;
     const BuildingUnit u = building_unit(o->units);
+    const int is_program = !model_has(model, SHEETS[0].file);
     Status status = STATUS_OK;
     memset(f, 0, sizeof *f);
-    if (text_ends(model, ".tcl")) {
+    if (is_program) {
         if (o->units == BUILDING_AUTO || u.stiffness != u.mass)
-            return bad_data(
-                err,
-                "building.units: an OpenSees model says none; set it to N_m_kg, kN_m_t, N_mm_t, kip_in or kip_ft "
-                "for %s",
-                model);
+            return bad_data(err, "building.units: %s says none; set it to N_m_kg, kN_m_t, N_mm_t, kip_in or kip_ft",
+                            model);
         status = opensees_read(f, model, u.length, u.stiffness * u.length, o->elastic, err);
     }
-    for (int i = 0; i < N_SHEETS && !text_ends(model, ".tcl") && status == STATUS_OK; i++)
+    for (int i = 0; i < N_SHEETS && !is_program && status == STATUS_OK; i++)
         if (i < N_REQUIRED || model_has(model, SHEETS[i].file))
             status = sheet_read(&SHEETS[i], model, f, err);
     THEN(status, frame_find_floors(f, model, o->rigid_floors, err));
