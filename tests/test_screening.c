@@ -330,6 +330,18 @@ TEST(penalties_whose_squares_overflow_do_not_end_a_search_with_levels)
     }
 }
 
+/* Of sixteen parts one is cheap: more designs are asked for than evaluations are paid for. */
+TEST(a_search_with_levels_has_room_for_more_designs_than_evaluations)
+{
+    SearchConfig c = config_of();
+    StopReason reason;
+    c.max_evals = 512;
+    open_other(1);
+    other_world.problem.n_parts = 16;
+    CHECK_OK(search_run(&other_world.problem, &c, NULL, NULL, NULL, &reason, &err), &err);
+    assert_less(1.2 * (double)c.max_evals, (double)other_world.done.n);
+}
+
 /* y = 2 + 3 y_cheap + d(x) for PAIRS designs at random, and the root mean square error of predictions at others, as a
  * share of what the line alone would leave. */
 enum { PAIRS = 60 };

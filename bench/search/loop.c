@@ -128,8 +128,7 @@ static Status simulate(Loop *l, size_t n, Err *err)
             continue;
         copy_values(n_var, x, l->X + l->n * n_var);
         copy_values(n_obj, f, l->F + l->n * n_obj);
-        for (size_t d = 0; d < n_var; d++)
-            l->U[l->n * n_var + d] = problem_to_unit(l->problem, d, x[d]);
+        problem_to_cube(l->problem, x, l->U + l->n * n_var);
         l->n++;
     }
     return STATUS_OK;
@@ -186,8 +185,7 @@ static double predict(Loop *l, size_t i)
 {
     const size_t n_obj = l->problem->n_obj;
     double worst = 0.0;
-    for (size_t d = 0; d < l->problem->n_var; d++)
-        l->u[d] = problem_to_unit(l->problem, d, l->members.X[i * l->problem->n_var + d]);
+    problem_to_cube(l->problem, l->members.X + i * l->problem->n_var, l->u);
     rbf_eval(l->rbf, 1, l->u, l->members.F + i * n_obj, l->e);
     for (size_t k = 0; k < n_obj; k++)
         worst = fmax(worst, l->e[k] / l->range[k]);
@@ -308,8 +306,11 @@ static int note(const SearchView *v, const SearchTime *time, void *user)
     Curve *c = user;
     const Archive *a = v->all;
     (void)time;
-    for (size_t i = c->n; i < a->n; i++)
+    for (size_t i = c->n; i < a->n; i++) {
         curve_add(c, a->Y + i * a->n_obj, a->ok[i]);
+        if (c->n == INITIAL)
+            curve_write(c, 0, NAN, NAN, NAN, 0); /* the sample, as in the loop */
+    }
     curve_write(c, v->generation, NAN, v->surrogate_error, NAN, 0);
     return 0;
 }

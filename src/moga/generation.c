@@ -158,15 +158,13 @@ Status generation_ask(Search *s, Err *err)
     Common *c = &s->common;
     const Problem *p = c->problem;
     const int wants_more = s->reason == STOP_NONE, is_first = wants_more && c->generation == 0;
-    double *x = s->scratch.samples;
     s->batch.n = 0;
     s->batch.room = screening_room(&s->screening, c, s->batch.size_max);
 
     /* 1. The given designs, moved into the box, and the initial sample; later a batch. */
     for (size_t i = 0; is_first && i < c->config->n_given; i++) {
-        for (size_t d = 0; d < p->n_var; d++)
-            x[d] = fmin(fmax(c->config->given[i * p->n_var + d], p->lower[d]), p->upper[d]);
-        add_sample(s, x);
+        copy_values(p->n_var, c->config->given + i * p->n_var, s->scratch.samples);
+        add_sample(s, s->scratch.samples);
     }
     if (is_first)
         add_samples(s, generation_samples(s));
@@ -188,11 +186,12 @@ Status generation_ask(Search *s, Err *err)
         TRY(pending_add(&c->pending, &q, err));
     }
 
-    /* 3. How many may be under way when the next group is made: one less than now at most; none of the initial sample,
-     * which the first surrogate wants whole, and none where nothing is left to be asked. */
-    const size_t now = c->pending.n, ahead = common_ahead(c->config, common_asked(c)), most = now > 0 ? now - 1 : 0;
-    const int waits_for_all = c->generation == 0 || !wants_more || screening_room(&s->screening, c, 1) == 0;
-    s->allowed = waits_for_all ? 0 : MIN_OF(ahead, most);
+    /* 3. How many may be under way when the next group is made: one less than now at most, an eighth of the initial
+     * sample, but none where it is screened (its line wants both parts) or where nothing is left to be asked. */
+    const int is_sample = c->generation == 0, is_last = !wants_more || screening_room(&s->screening, c, 1) == 0;
+    const size_t now = c->pending.n, most = is_sample ? now / 8 : now - MIN_OF(now, 1);
+    const int waits_for_all = is_last || (is_sample && s->screening.is_on);
+    s->allowed = waits_for_all ? 0 : MIN_OF(common_ahead(c->config, common_asked(c)), most);
     return STATUS_OK;
 }
 
