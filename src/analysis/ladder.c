@@ -48,7 +48,7 @@ static void set_values(const Settings *all, int kind, double strong_s, LadderEff
     settings_each(all, EFFECTS[kind].key, take_value, now);
     const char *with = EFFECTS[kind].with ? EFFECTS[kind].with : now;
     const char *without = EFFECTS[kind].without ? EFFECTS[kind].without : now;
-    *e = (LadderEffect){.words = EFFECTS[kind].words, .key = EFFECTS[kind].key, .is_finer = kind == STEPS};
+    *e = (LadderEffect){.words = EFFECTS[kind].words, .key = EFFECTS[kind].key};
     e->is_set = kind == STEPS ? strcmp(now, with) == 0 : strcmp(now, without) != 0 || kind == END;
     snprintf(e->with, sizeof e->with, "%s", e->is_set ? now : with);
     snprintf(e->without, sizeof e->without, "%s", kind == STEPS && e->is_set ? "standard" : without);
@@ -98,10 +98,11 @@ Status ladder_effects(const Settings *s, double strong_s, LadderForm form, Ladde
         if (!is_there(all, kind, strong_s))
             continue;
         set_values(all, kind, strong_s, e);
+        e->is_added = kind == STEPS || (kind == BETWEEN && form == LADDER_BRIEF);
         if (is_given)
             settings_each(s, e->key, take_value, e->with);
         else
-            TRY(settings_put(all, e->key, e->is_finer ? e->without : e->with, err));
+            TRY(settings_put(all, e->key, e->is_added ? e->without : e->with, err));
         if (form == LADDER_OPEN)
             e->is_set = is_given;
         e->cost_s = NAN;

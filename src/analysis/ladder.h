@@ -48,7 +48,7 @@ typedef struct {
     int decided_in;         /* the scene that has it */
     double cost_s;          /* what it adds to a simulation; NAN: not known */
     int is_needed, is_kept; /* by itself; in the set */
-    int is_finer;           /* the steps: the model with all has the other value */
+    int is_added;           /* steps; between floors, of LADDER_BRIEF: the model with all has the other value */
 } LadderEffect;
 
 typedef struct {
@@ -68,7 +68,8 @@ static inline int ladder_says(const Ladder *l, size_t i)
 }
 
 /* LADDER_BRIEF: without the steps and the weak end, on the strong part of the record but for the values by the set;
- * every effect is left out once, so that no costs are known (NAN). LADDER_OPEN: a study's choice
+ * every effect is left out once, so that no costs are known (NAN), but nodes between floors, with which a simulation
+ * takes three times as long: they are added once to all others. LADDER_OPEN: a study's choice
  * (analysis/model_choice.h): without the steps, and what the settings give stays, be it the default. */
 typedef enum { LADDER_WHOLE, LADDER_BRIEF, LADDER_OPEN } LadderForm;
 

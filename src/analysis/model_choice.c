@@ -24,7 +24,7 @@ typedef struct {
     size_t record;
     const double *x;
     Tried all, set;                /* by all effects, by the set at hand */
-    Measured finer[LADDER_SCENES]; /* by all with more steps, where they are among the effects */
+    Measured added[LADDER_SCENES]; /* by all and the effect that is added to them */
 } Case;
 
 typedef struct {
@@ -98,12 +98,12 @@ static Status open_effects(Choosing *c, Err *err)
 
 static Status begin(Choosing **out, const Settings *s, Ladder *l, Err *err)
 {
-    Choosing *c;
-    TRY_ROOM(c, 1, "the choice of a model", err);
-    *out = c;
+    TRY_ROOM(*out, 1, "the choice of a model", err);
+    Choosing *c = *out;
     c->s = *s;
     c->whole_s = s->sim.duration_s;
     c->l = l;
+    c->s.sim.forces = FORCES_AUTO;
     TRY(settings_put(&c->s, "search.objectives", "j1_m, drift_ratio, j3_g", err)); /* LADDER_MEASURE */
     return settings_put(&c->s, "search.limits", "none", err);
 }
@@ -211,7 +211,7 @@ static Status try_set(Choosing *c, int *is_enough, Err *err)
     l->all_s = l->set_s = 0;
     for (size_t i = 0; i < c->n_cases; i++) {
         const Case *k = &c->at[i];
-        const Measured *whole = last->is_finer && last->is_kept ? k->finer : k->all.scene;
+        const Measured *whole = last->is_added && last->is_kept ? k->added : k->all.scene;
         l->all_s += k->all.least_s / (double)c->n_cases;
         l->set_s += k->set.least_s / (double)c->n_cases;
         for (int j = 0; j < LADDER_SCENES; j++)
@@ -272,8 +272,6 @@ static void learn(Choosing *c, Case *k, const ReplicateSummary *as_built, const 
         const double scatter = as_built->sd[LADDER_MEASURE[m]] / as_built->mean[LADDER_MEASURE[m]];
         c->variance[m] += isfinite(scatter) ? scatter * scatter : 0;
         l->tolerance[m] = fmax(LADDER_TOLERANCE, sqrt(c->variance[m] / (double)c->n_cases));
-        if (c->n_cases == 1)
-            l->value[m] = k->all.scene[0].value[LADDER_MEASURE[m]];
     }
     for (size_t i = 0; i < l->n; i++) {
         LadderEffect *e = &l->effect[i];
@@ -284,7 +282,7 @@ static void learn(Choosing *c, Case *k, const ReplicateSummary *as_built, const 
         for (int s = 0; s < LADDER_SCENES; s++)
             for (int m = 0; m < LADDER_MEASURES && is_asked(c, k, i, LADDER_SCENE[s]); m++) {
                 const Measured *other = &without[i].scene[s], *whole = &k->all.scene[s];
-                change[s][m] = e->is_finer ? ladder_change(whole, other, m) : ladder_change(other, whole, m);
+                change[s][m] = e->is_added ? ladder_change(whole, other, m) : ladder_change(other, whole, m);
             }
         const double most = ladder_largest(l, change, &scene), less_s = k->all.least_s - without[i].least_s;
         if (c->n_cases == 1 || most > e->most) {
@@ -293,13 +291,17 @@ static void learn(Choosing *c, Case *k, const ReplicateSummary *as_built, const 
             e->decided_in = scene;
         }
         if (c->form == LADDER_WHOLE)
-            e->cost_s = e->is_finer ? -less_s : less_s;
-        if (e->is_finer)
-            memcpy(k->finer, without[i].scene, sizeof k->finer);
+            e->cost_s = e->is_added ? -less_s : less_s;
+        if (e->is_added)
+            memcpy(k->added, without[i].scene, sizeof k->added);
         e->is_needed = most > 1;
         if (e->is_needed)
             ladder_keep(l, e);
     }
+    if (l->effect->is_added) /* nothing is left out of the model with all from here on */
+        memcpy(k->all.scene, k->added, sizeof k->added);
+    for (int m = 0; m < LADDER_MEASURES && c->n_cases == 1; m++)
+        l->value[m] = k->all.scene[0].value[LADDER_MEASURE[m]];
 }
 
 /* Leave out each effect in a case; one in which the model with all fails is no case. */
@@ -323,7 +325,7 @@ static Status try_case(Choosing *c, size_t record, const double *x, Err *why, Er
     k->all.scene[BARE] = c->bare[record];
     for (size_t i = 0; i < l->n; i++) {
         const LadderEffect *e = &l->effect[i];
-        snprintf(scene[1 + i].setting, sizeof scene->setting, "%s=%s", e->key, e->is_finer ? e->with : e->without);
+        snprintf(scene[1 + i].setting, sizeof scene->setting, "%s=%s", e->key, e->is_added ? e->with : e->without);
         for (int j = 0; j < LADDER_SCENES; j++)
             if (is_asked(c, k, i, LADDER_SCENE[j]))
                 task[n++] = task_of(&without[i], j, c->n_each, k, 1 + i);

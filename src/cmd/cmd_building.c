@@ -39,7 +39,7 @@ static Status open_model(const Args *args, Model *m, Err *err)
     CoreOptions *core = &m->s.core;
     DesignSpace space;
     Designs d;
-    m->has_core = text_ends(name, ".ini") || (!frame_is(name) && is_there && S_ISREG(st.st_mode));
+    m->has_core = !frame_is(name) && is_there && S_ISREG(st.st_mode);
     settings_defaults(&m->s);
     if (!is_there && strcmp(name, "guyan") != 0 && strcmp(name, "appendix") != 0) {
         errno = ENOENT;

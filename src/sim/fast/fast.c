@@ -171,11 +171,9 @@ FastTolerances fast_tolerances(Accuracy accuracy)
                                .calms_down = 1},
         [ACCURACY_FINE] = {.steps_per_contact = 80,
                            .solver_tolerance = 1e-12,
-                           .energy_tolerance = 0,
                            .device_error = 1e-10,
                            .steps_max = 2e8,
-                           .peak_tolerance = 1e-6,
-                           .flexibility_left_out = 0},
+                           .peak_tolerance = 1e-6}, /* no energy tolerance, and nothing is left out */
     };
     return TOLERANCES[accuracy];
 }
