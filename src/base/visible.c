@@ -95,7 +95,7 @@ void cell_text(char cell[], size_t size, const char *text)
             code = (unsigned char)*text;
         /* Some spreadsheets read the full-width = + - @ (U+FF1D ...) like the narrow ones. */
         const uint32_t narrow = code > 0xff00 && code < 0xff5f ? code - 0xfee0 : code;
-        const size_t apostrophe = begins && length && narrow > 0 && narrow < 0x80 && strchr("=+-@", narrow) != NULL;
+        const size_t apostrophe = begins && length && narrow > 0 && narrow < 0x80 && strchr("=+-@", narrow);
         length += !length;
         if (n + apostrophe + length >= size)
             break;

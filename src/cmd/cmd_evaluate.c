@@ -408,7 +408,7 @@ static Status run(const Args *args, Err *err)
     Run r = {0};
     TRY(args_alone(args, "--counts",
                    "--design --record --pga --sa --fragility --set --csv --pelicun --full-model --replicates", err));
-    if (args_has(args, "--counts") == (args->operand != NULL))
+    if (args_has(args, "--counts") == !!args->operand)
         return misused(err, "imtet evaluate takes a CONFIG, a RUN or --counts; for example: %s", CMD_EVALUATE.example);
     if (!args->operand) { /* of simulations that others have made */
         Fragilities f = {0};

@@ -126,7 +126,7 @@ static void look_for_answer(void *self, Worker *w)
 {
     const External *e = self;
     size_t used = 0;
-    for (char *end; w->n_done < w->n && (end = memchr(w->line + used, '\n', w->n_line - used)) != NULL;) {
+    for (char *end; w->n_done < w->n && (end = memchr(w->line + used, '\n', w->n_line - used));) {
         char *line = w->line + used;
         const size_t length = end - line;
         json_error_t error;

@@ -70,10 +70,8 @@ static int is_plain(const char *word)
     for (size_t i = 0; i < n; i++)
         if ((unsigned char)word[i] < ' ' || word[i] == '"' || word[i] == '\\' || word[i] == 127)
             return 0;
-    json_t *text = json_stringn(word, n);
-    const int is_text = text != NULL;
-    json_decref(text);
-    return is_text && n > 0 && word[0] != ' ' && word[n - 1] != ' ' && !strchr("=+-@", word[0]);
+    json_auto_t *text = json_stringn(word, n);
+    return text && n > 0 && word[0] != ' ' && word[n - 1] != ' ' && !strchr("=+-@", word[0]);
 }
 
 /* Words of a choice, whose upper bound is the number of the last one. */

@@ -2,11 +2,8 @@
 
 size_t batch_size(const Common *c)
 {
-    const SearchConfig *o = c->config;
-    const size_t least = o->population / BATCH_POPULATION_SHARE + 1, grown = c->archive.n / BATCH_ARCHIVE_SHARE,
-                 most = o->surrogate == SURROGATE_OFF ? o->population / 2 : o->population,
-                 wanted = MAX_OF(grown, least), size = MIN_OF(wanted, most);
-    return o->ahead < 0 ? size : MIN_OF(size, (size_t)o->ahead + 1);
+    const size_t population = c->config->population, half = common_ahead(c, c->archive.n) / 2;
+    return MIN_OF(MAX_OF(half, 1), c->config->surrogate == SURROGATE_OFF ? population / 2 : population);
 }
 
 static void append(Batch *b, size_t n_var, const double x[], Question q)

@@ -13,8 +13,8 @@ typedef struct {
     Question *q; /* (size_max) of them */
 } Batch;
 
-/* Designs between two fits of the surrogate: more as evaluations accumulate, so that fitting never dominates; no more
- * than a look-ahead that is given, and one. */
+/* Designs between two fits of the surrogate: half of the look-ahead, more as evaluations accumulate, so that fitting
+ * never dominates. */
 size_t batch_size(const Common *c);
 
 /* Appends x unless it is known, the batch is full or all evaluations are spent; criterion: that picked it. */

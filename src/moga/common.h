@@ -41,10 +41,15 @@ static inline size_t common_asked(const Common *c)
     return c->archive.n + c->pending.n;
 }
 
-/* Designs that may be under way when the next group is made: an eighth of a small budget, and 240 at most, each of
- * which is predicted for every group. */
-static inline size_t common_ahead(const SearchConfig *c, size_t asked)
+/* Designs that may be under way when the next group is made, twice a group: an eighth of a small budget,
+ * and 240 at most, each of which is predicted for every group. */
+static inline size_t common_ahead(const Common *c, size_t asked)
 {
-    const size_t least = MIN_OF(config_budget(c) / 8, AHEAD), share = 2 * asked / AHEAD, most = MIN_OF(share, 240);
-    return c->ahead >= 0 ? (size_t)c->ahead : MAX_OF(most, least);
+    const Problem *p = c->problem;
+    size_t least = AHEAD * p->n_obj;
+    for (size_t d = 0; d < p->n_var; d++)
+        if (problem_kind(p, d) == VARIABLE_WHOLE || problem_kind(p, d) == VARIABLE_CHOICE)
+            least = AHEAD_MIXED;
+    least = MIN_OF(config_budget(c->config) / 8, least);
+    return c->config->ahead >= 0 ? (size_t)c->config->ahead : MAX_OF(MIN_OF(asked / AHEAD_SHARE, 240), least);
 }

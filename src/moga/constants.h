@@ -9,14 +9,11 @@
 enum { INITIAL_PER_VARIABLE = 4 }; /* size of the initial sample: this n_var + offset, half of the budget at most */
 enum { INITIAL_OFFSET = 12 };      /* ... */
 
-/* -- batch.c: size of a batch -------------------------------------------------------------------------------------- */
-
-enum { BATCH_POPULATION_SHARE = 8 }; /* population / this + 1 at least */
-enum { BATCH_ARCHIVE_SHARE = 40 };   /* evaluations / this, where that is more */
-
 /* -- common.h: look-ahead: questions whose answers are not known yet when the next ones are made ------------------- */
 
-enum { AHEAD = 32 }; /* at least, and questions / (this / 2) where that is more */
+enum { AHEAD = 5 };        /* for each objective, at least: so many directions are searched side by side, */
+enum { AHEAD_MIXED = 3 };  /* but in all where there are whole numbers or choices, which are found one after another */
+enum { AHEAD_SHARE = 24 }; /* questions / this, where that is more */
 
 /* -- state.c: reference vectors of infill ------------------------------------------------------------------------- */
 

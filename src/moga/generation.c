@@ -191,7 +191,7 @@ Status generation_ask(Search *s, Err *err)
     const int is_sample = c->generation == 0, is_last = !wants_more || screening_room(&s->screening, c, 1) == 0;
     const size_t now = c->pending.n, most = is_sample ? now / 8 : now - MIN_OF(now, 1);
     const int waits_for_all = is_last || (is_sample && s->screening.is_on);
-    s->allowed = waits_for_all ? 0 : MIN_OF(common_ahead(c->config, common_asked(c)), most);
+    s->allowed = waits_for_all ? 0 : MIN_OF(common_ahead(c, common_asked(c)), most);
     return STATUS_OK;
 }
 

@@ -123,9 +123,9 @@ Status search_ask(Search *s, SearchMove *move, Question *q, Err *err)
     return STATUS_OK;
 }
 
-size_t search_at_once(const SearchConfig *c)
+size_t search_at_once(const Problem *p, const SearchConfig *c)
 {
-    return common_ahead(c, c->max_evals) + batch_size(&(Common){.config = c, .archive = {.n = c->max_evals}});
+    return 3 * common_ahead(&(Common){.problem = p, .config = c}, c->max_evals) / 2; /* with a group */
 }
 
 Status search_tell(Search *s, size_t number, const Evaluation *e, const void *parts, Err *err)

@@ -80,7 +80,7 @@ Status search_ask(Search *s, SearchMove *move, Question *q, Err *err);
 Status search_tell(Search *s, size_t number, const Evaluation *e, const void *parts, Err *err);
 
 /* Questions that may be under way at once, at most, behind the initial sample. */
-size_t search_at_once(const SearchConfig *c);
+size_t search_at_once(const Problem *p, const SearchConfig *c);
 
 /* Nothing more is asked for this reason; what is under way enters. */
 void search_stop(Search *s, StopReason reason);

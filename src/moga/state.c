@@ -40,7 +40,7 @@ Status state_create(Search *s, Err *err)
     const SearchConfig *c = s->common.config;
     screening_begin(&s->screening, &s->common);
     const size_t population = c->population, initial = c->n_given + generation_samples(s);
-    const size_t pending = common_ahead(c, UINT32_MAX); /* the most: screened designs may be any number */
+    const size_t pending = common_ahead(&s->common, UINT32_MAX); /* the most: screened designs may be any number */
     const size_t n_pool = MAX_OF(initial, 5 * population) + 2 * pending;
     const size_t n_members = n_pool + (p->kind ? SWAPS * population : 0); /* every design of a descent has its swaps */
     const size_t evals = MAX_OF(c->max_evals, 4);
@@ -88,7 +88,7 @@ void state_free(Search *s)
 
 /* -- as bytes ------------------------------------------------------------------------------------------------------ */
 
-enum { STATE_VERSION = 19 };
+enum { STATE_VERSION = 20 };
 
 int search_state_is_current(const void *state, size_t n_state)
 {

@@ -178,7 +178,7 @@ static void tell_start(const Study *study)
     const Problem *p = adapter_problem(study->adapter);
     const SearchConfig config = search_config_of(&study->used);
     if (study->options->started)
-        study->options->started(sum->folder, sum->n_before, p->n_workers, search_at_once(&config) * p->n_parts,
+        study->options->started(sum->folder, sum->n_before, p->n_workers, search_at_once(p, &config) * p->n_parts,
                                 study->options->user);
 }
 
