@@ -97,7 +97,7 @@ TEST(a_search_with_levels_comes_near_them_in_150_evaluations_and_without_they_ar
     write_in_place("plain.ini", DTLZ2_INI(8, 3));
     free(output_of("optimize @/plain.ini --out @/wished --max-evals 150 --set 'search.aspire=f1 0.2, f2 0.2,f3 0.6'"));
     free(output_of("optimize @/plain.ini --out @/plain --max-evals 150"));
-    assert_less(most_behind("wished"), 0.21235 + 0.011);
+    assert_less(most_behind("wished"), 0.21235 + 0.015);
     assert_less(0.21235, most_behind("wished"));
     assert_less(0.21235 + 0.02, most_behind("plain"));
 }

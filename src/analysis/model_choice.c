@@ -337,10 +337,11 @@ static Status try_case(Choosing *c, size_t record, const double *x, Err *why, Er
         if (is_asked(c, k, i, SCENE_IMPACT))
             take_copies(&without[i], c->n_each);
     c->bare[record] = k->all.scene[BARE];
-    const int fails = failing(&k->all);
+    const Tried *whole = l->effect->is_added && failing(&k->all) == LADDER_SCENES ? without : &k->all;
+    const int fails = failing(whole);
     if (fails < LADDER_SCENES) {
         bad_data(why, "the model with all effects fails (%s): %s", SCENES[LADDER_SCENE[fails]].words,
-                 k->all.scene[fails].reason);
+                 whole->scene[fails].reason);
         return STATUS_OK;
     }
     c->n_cases++;

@@ -102,7 +102,7 @@ Status asked_check(Adapter *a, json_t *out, double *each_s, Outcome *outcome, Er
     }
     if (status == STATUS_OK) {
         json_t *worker = json_object();
-        put_columns(worker, adapter_schema(a), &t.row[0], 1);
+        put_columns(worker, adapter_schema(a), t.row, 1);
         json_put(out, "worker=%p", worker);
         *each_s = t.row[0].seconds;
         *outcome = t.row[0].outcome;

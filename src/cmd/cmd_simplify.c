@@ -94,7 +94,7 @@ static Status fail_unmet(const Improve *m, Err *err)
 {
     const Schema *s = &m->run.schema;
     const EvaluationTable *path = &m->result.designs;
-    const Evaluation *start = &path->row[0], *last = &path->row[path->n - 1];
+    const Evaluation *start = path->row, *last = &path->row[path->n - 1];
     const int breaks_limits = last->violation > start->violation;
     char lost[200] = "", keep[200] = "";
     double g[LIMITS_MAX];

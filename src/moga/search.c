@@ -125,7 +125,8 @@ Status search_ask(Search *s, SearchMove *move, Question *q, Err *err)
 
 size_t search_at_once(const Problem *p, const SearchConfig *c)
 {
-    return 3 * common_ahead(&(Common){.problem = p, .config = c}, c->max_evals) / 2; /* with a group */
+    const Common end = {.problem = p, .config = c, .archive.n = c->max_evals};
+    return common_ahead(&end, c->max_evals) + batch_size(&end);
 }
 
 Status search_tell(Search *s, size_t number, const Evaluation *e, const void *parts, Err *err)

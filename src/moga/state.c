@@ -41,7 +41,7 @@ Status state_create(Search *s, Err *err)
     screening_begin(&s->screening, &s->common);
     const size_t population = c->population, initial = c->n_given + generation_samples(s);
     const size_t pending = common_ahead(&s->common, UINT32_MAX); /* the most: screened designs may be any number */
-    const size_t n_pool = MAX_OF(initial, 5 * population) + 2 * pending;
+    const size_t n_pool = MAX_OF(initial, 5 * population) + 2 * pending + 1;
     const size_t n_members = n_pool + (p->kind ? SWAPS * population : 0); /* every design of a descent has its swaps */
     const size_t evals = MAX_OF(c->max_evals, 4);
     const size_t centres = MIN_OF(c->surrogate_max, evals), known = MIN_OF(evals, ROWS_AT_ONCE);

@@ -168,7 +168,7 @@ static void stop(void *self)
     r->ending = 1;
     if (r->is_running)
         pthread_join(r->thread, NULL);
-    pool_close(&r->pool[0]);
+    pool_close(r->pool);
     pool_close(&r->pool[1]);
     pthread_mutex_destroy(&r->lock);
     free(r->rank);

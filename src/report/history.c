@@ -22,7 +22,7 @@ Status histories_run(const Scenario *scenario, const double x[], int floor, Trac
 {
     double most = 0;
     size_t n = 2;
-    TRY(history_run(scenario, SCENE_IMPACT, x, &out[0], err));
+    TRY(history_run(scenario, SCENE_IMPACT, x, out, err));
     TRY(history_run(scenario, SCENE_NO_CORE, x, &out[1], err));
     for (int i = 0; i < 2; i++)
         for (size_t k = 0; k < out[i].n; k++)

@@ -485,8 +485,8 @@ static Status assign_text(Settings *s, const Option *o, const char *value, Err *
         return bad_data(err, "%s: is empty", o->key);
     if (strlen(value) >= OPTION_TEXT_MAX)
         return bad_data(err, "%s: is longer than %d characters", o->key, OPTION_TEXT_MAX - 1);
-    const int needs_quotes = strstr(value, " #") != NULL, has_both = strchr(value, '"') && strchr(value, '\'');
-    if (strpbrk(value, "\r\n") || strstr(value, " ;") || (needs_quotes && (has_both || strchr(value, '\\'))) ||
+    const int has_both = strchr(value, '"') && strchr(value, '\'');
+    if (strpbrk(value, "\r\n") || strstr(value, " ;") || (strstr(value, " #") && (has_both || strchr(value, '\\'))) ||
         is_blank(value[0]) || is_blank(value[strlen(value) - 1]))
         return bad_data(
             err,

@@ -131,7 +131,7 @@ Status model_set(SimModel *model, const SceneOptions *o, const Building *b, cons
         model->yield_m[j] = b->yield_m[j] > 0 ? b->yield_m[j] : 1e300;
         model->yield_n_m[j] = b->yield_n_m[j];
     }
-    TRY(contact_make(&model->contact[0], &o->contact, err));
+    TRY(contact_make(model->contact, &o->contact, err));
     for (int j = 1; j < n; j++)
         model->contact[j] = model->contact[0];
     for (int j = 0; j < model->n_pad; j++) {

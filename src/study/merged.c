@@ -108,7 +108,7 @@ static Status read_all(Run *to, size_t n, const char *const folders[], Run run[]
 {
     for (size_t k = 0; k < n; k++) {
         TRY(run_read(&run[k], folders[k], err));
-        TRY(check_same(&run[0], &run[k], err));
+        TRY(check_same(run, &run[k], err));
         to->n_failed += run[k].n_failed;
         to->n_repeats += run[k].n_repeats;
         to->n_finished += run[k].n_finished;
@@ -119,7 +119,7 @@ static Status read_all(Run *to, size_t n, const char *const folders[], Run run[]
     }
 
     /* Settings, columns and provenance pass over from the first. */
-    Run *first = &run[0];
+    Run *first = run;
     const Schema *s = &to->schema;
     to->settings = first->settings;
     to->provenance = first->provenance;
