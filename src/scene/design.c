@@ -106,6 +106,7 @@ Status design_space_make(DesignSpace *s, const DesignOptions *o, CoreSection sec
         return bad_data(err, "design.variables: gaps and thickness are always there; add to them");
     *s = (DesignSpace){.n_floors = n_floors, .gap_sides = o->gap_sides};
     for (int g = 0; g < N_GROUPS; g++) {
+        const int by_floor = GROUPS[g].unit != NULL;
         if (g == DEVICE) {
             TRY(read_devices(s, o, set, err));
             set |= s->n_words == 0 ? 0 : set >> MASS & 1 ? 1U << DEVICE | 1U << ROOF : 1U << DEVICE;
@@ -117,7 +118,7 @@ Status design_space_make(DesignSpace *s, const DesignOptions *o, CoreSection sec
         if (n_floors > 0 && zones[g] > n_floors)
             return bad_data(err, "design.%s_zones: %ld zones, but only %d floors", GROUPS[g == SLIP ? LINK : g].name[0],
                             zones[g], n_floors);
-        s->count[g] = !GROUPS[g].unit ? GROUPS[g].n : zones[g] ? (int)zones[g] : n_floors;
+        s->count[g] = !by_floor ? GROUPS[g].n : zones[g] ? (int)zones[g] : n_floors;
         s->count[g] *= g == GAP && o->gap_sides == GAPS_EACH ? SIDES : 1;
         s->n_var += s->count[g];
     }
