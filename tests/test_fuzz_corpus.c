@@ -1,6 +1,5 @@
-/* The inputs that the fuzzers found worth keeping, each read once: no crash, no hang, no leak (a sanitized build
- * tells).
- */
+/* The inputs that the fuzzers found worth keeping, each read once: no crash, hang or leak (a sanitized build
+ * tells). */
 #include "check.h"
 
 #include <dirent.h>

@@ -37,17 +37,14 @@ static Status simulate(void *self, size_t worker, const Task *t, Err *why)
     b->n_under_way--;
     if (worker >= b->problem.n_workers)
         return (fail)(why, STATUS_INTERNAL, "worker %zu", worker);
-    for (int i = 0; i < 2; i++)
-        if (t->part == 1 && t->x[0] == b->fault_at[i])
-            return (fail)(why, STATUS_BAD_DATA, "design %g", t->x[0]);
+    if (t->part == 1 && (t->x[0] == b->fault_at[0] || t->x[0] == b->fault_at[1]))
+        return (fail)(why, STATUS_BAD_DATA, "design %g", t->x[0]);
     return STATUS_OK;
 }
 
 /* Failed where x[1] is negative. */
-static void combine(const Problem *p, size_t n, const void *parts, Evaluation *e)
+static void combine(const Problem *, size_t, const void *parts, Evaluation *e)
 {
-    (void)p;
-    (void)n;
     const Part *part = parts;
     e->f[0] = e->seconds = 0.0;
     for (int k = 0; k < PARTS; k++)
@@ -62,11 +59,12 @@ static void combine(const Problem *p, size_t n, const void *parts, Evaluation *e
         evaluation_set_outcome(e, OUTCOME_ERROR, "negative");
 }
 
+static const double LOWER[VAR] = {-1e3, -1e3}, UPPER[VAR] = {1e3, 1e3};
+
 static const Simulator SIMULATOR = {.simulate = simulate, .combine = combine};
 
-static void judge(const Evaluation *e, double f[], double g[], const void *user)
+static void judge(const Evaluation *e, double f[], double g[], const void *)
 {
-    (void)user;
     f[0] = -e->f[0];
     f[1] = e->f[1];
     g[0] = e->f[0] - 10.0;
@@ -88,6 +86,8 @@ static Queue *open_queue(size_t workers, Observer observer)
     bench.problem = (Problem){.n_var = VAR,
                               .n_obj = OBJ,
                               .n_con = 1,
+                              .lower = LOWER,
+                              .upper = UPPER,
                               .judge = judge,
                               .simulator = &SIMULATOR,
                               .self = &bench,
@@ -111,10 +111,9 @@ static void ask(Queue *q, int n)
                  &err);
 }
 
-static Status note_done(const Evaluation *e, void *user, Err *why)
+static Status note_done(const Evaluation *e, void *user, Err *)
 {
     Bench *b = user;
-    (void)why;
     b->heard[b->n_heard++] = e->id;
     return STATUS_OK;
 }

@@ -185,15 +185,18 @@ TEST(growth_is_the_hypervolume_that_status_tells)
     json_auto_t *page = run_of("dtlz");
     const json_t *growth = json_object_get(page, "convergence"), *error = json_object_get(growth, "error");
     const json_t *simulated = json_object_get(growth, "simulated"), *volume = json_object_get(growth, "volume");
-    assert_true(run.n_generations > 1 && json_array_size(volume) == run.n_generations);
     assert_int_equal(json_integer_value(json_object_get(page, "evaluated")), run.table.n);
+    size_t told = 0;
     for (size_t i = 0; i < run.n_generations; i++) {
         const double v = run.generation[i].hypervolume;
-        assert_true(v > 0 && v < 1 && (i == 0 || v >= run.generation[i - 1].hypervolume));
-        assert_close(json_number_value(json_array_get(volume, i)), v, 1e-5);
-        assert_close(json_number_value(json_array_get(error, i)), sqrt(v * (1 - v) / 20000), 1e-5);
-        assert_same_number(json_number_value(json_array_get(simulated, i)), (double)run.generation[i].simulated);
+        if (isnan(v) && told == 0) /* before all of the sample are there */
+            continue;
+        assert_true(v > 0 && v < 1 && (told == 0 || v >= run.generation[i - 1].hypervolume));
+        assert_close(json_number_value(json_array_get(volume, told)), v, 1e-5);
+        assert_close(json_number_value(json_array_get(error, told)), sqrt(v * (1 - v) / 20000), 1e-5);
+        assert_same_number(json_number_value(json_array_get(simulated, told++)), (double)run.generation[i].simulated);
     }
+    assert_true(told > 1 && json_array_size(volume) == told);
 }
 
 TEST(the_page_has_the_errors_of_front_csv)

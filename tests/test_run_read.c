@@ -31,7 +31,7 @@ TEST(what_is_wrong_in_one_cell_is_named)
         {"UPDATE evaluation SET kind = 'infill' WHERE id = 6", "evaluation 6 is not what was written", STATUS_IO},
         {"UPDATE evaluation SET kind = NULL WHERE id = 6", "evaluation 6 is not what was written", STATUS_IO},
         {"UPDATE evaluation SET generation = 1 WHERE id = 6", "evaluation 6 is not what was written", STATUS_IO},
-        {"UPDATE generation SET hypervolume = hypervolume / 2 WHERE number = 1", "generation 1 is not what was written",
+        {"UPDATE generation SET hypervolume = 0.5 WHERE number = 1", "generation 1 is not what was written",
          STATUS_IO},
         {"UPDATE generation SET front = front + 1 WHERE number = 2", "generation 2 is not what was written", STATUS_IO},
         {"UPDATE front SET left = 1 WHERE left IS NULL", "its front is not what was written", STATUS_IO},

@@ -462,10 +462,9 @@ Status store_evaluation(RunStore *store, const Evaluation *e, Err *err)
 
 /* -- the hypervolume of a run: the share of a box that its front dominates ----------------------------------------- */
 
-/* The box is about the first designs that succeeded, when all of their generation are there, as those of the first
- * sample are from the first step on: from a fifth of their range below the best to the worst. Only designs on the front
- * count: one that an earlier one dominates adds nothing. Where repeats move designs and take them off the front, all of
- * it is measured again. */
+/* The box is about the first designs that succeeded and their generation, once one of the next says that all of it are
+ * there: from a fifth of their range below the best to the worst. Only designs on the front count: one that an earlier
+ * one dominates adds nothing. Where repeats move designs and take them off the front, all of it is measured again. */
 static Status measure_front(RunStore *store, const Archive *a, int is_last, Err *err)
 {
     double lower[OBJECTIVES_MAX], reference[OBJECTIVES_MAX];
@@ -480,7 +479,7 @@ static Status measure_front(RunStore *store, const Archive *a, int is_last, Err 
             first++;
         for (end = first; end < a->n && a->generation[end] == a->generation[first];)
             end++;
-        if (first == a->n || (end == a->n && a->generation[first] > 0 && !is_last))
+        if (first == a->n || (end == a->n && !is_last))
             return STATUS_OK;
         for (size_t k = 0; k < a->n_obj; k++) {
             lower[k] = reference[k] = a->Y[first * a->n_obj + k];
