@@ -31,7 +31,7 @@ struct RunStore {
     size_t n_known;              /* designs of finished generations */
     unsigned char *was_on_front; /* (n_known) at the end of the last generation */
     uint64_t front;              /* digest of those on it */
-    Hypervolume *hypervolume;    /* that the front dominates; NULL: no design has succeeded yet */
+    Hypervolume *hypervolume;    /* that the front dominates; NULL: the sample is not complete */
     size_t n_measured;           /* designs that it has seen */
     RunSession session;
     int is_ready; /* for a session: what happens is written down */

@@ -33,7 +33,7 @@ typedef struct Settings Settings;
 /* The search at the end of a generation, and what the study adds; one at a time, by any thread. */
 typedef struct {
     const SearchView *view; /* NULL: within the first generation of the session, of simulations alone */
-    double hypervolume;     /* share of a box about the first sample; NAN: no design has succeeded yet */
+    double hypervolume;     /* share of a box about the first sample; NAN: that is not complete */
     Progress progress;
     const Settings *settings;
 } StudyProgress;
