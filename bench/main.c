@@ -226,9 +226,8 @@ static Status run_loop(const Args *args, Err *err)
 static Status run_schedule(const Args *args, Err *err)
 {
     SchedulePlan plan = {.folder = args->operand};
-    TRY(args_number(args, "--serial", 0.0, 1.0, 0.2, &plan.serial, err));
-    TRY(args_number(args, "--ends", 0.0, 1e9, 0.0, &plan.ends, err));
-    TRY(args_number(args, "--chain", 0.0, 1e9, 0.0, &plan.chain, err));
+    TRY(args_whole(args, "--from", 0, LONG_MAX, 0, &plan.from, err));
+    TRY(args_whole(args, "--apart", 0, 4096, 0, &plan.apart, err));
     return schedule(&plan, stdout, err);
 }
 
@@ -285,10 +284,9 @@ static const Command COMMANDS[] = {
             {"--engines", "FILE", NULL, 0, "fast, cvode and etdrk4 in the tower under every law, as CSV"}),
     COMMAND(
         "search", NULL, run_factors, "evaluations that the surrogate saves, on problems of other families",
-        "imtet-bench search --keep results/search",
+        "imtet-bench search --seeds 3",
         "How many evaluations a plain search needs for the IGD+ and the hypervolume that the surrogate reaches, as\n"
-        "a multiple, 20 at most: medians over the seeds, the geometric mean over the problems. An interrupted\n"
-        "table with --keep goes on where it was; after a change of the search the folder is to be emptied.",
+        "a multiple, 20 at most: medians over the seeds, the geometric mean over the problems.",
         {"--problem", "LIST", NULL, 0, "some of the problems; all but those kept aside unless given"},
         {"--aside", NULL, NULL, 0, "those kept aside instead"},
         {"--mixed", NULL, NULL, 0, "those with whole numbers and choices instead"},
@@ -305,9 +303,8 @@ static const Command COMMANDS[] = {
     COMMAND("schedule", "RUN", run_schedule, "a run of one thread replayed on 1 to 64 workers",
             "imtet-bench schedule results/kobe",
             "Efficiency, critical path and waiting, from the times of its designs and of its search. As CSV.",
-            {"--serial", "SHARE", NULL, 0, "of choosing designs, that one processor does alone; 0.2 unless given"},
-            {"--ends", "S", NULL, 0, "work behind the search: polishing, naming, baselines"},
-            {"--chain", "S", NULL, 0, "the longest chain in it"}),
+            {"--from", "N", NULL, 0, "after the step that has the first N designs"},
+            {"--apart", "N", NULL, 0, "processors that choose designs beside the workers; those choose unless given"}),
     COMMAND("problem", "NAME", problem_run, "the search on a problem from a textbook: dtlz2, wfg4",
             "imtet-bench problem dtlz2 --max-evals 500 --seed 1 --csv dtlz2.csv",
             "Of 22 variables and 7 objectives (problem.variables, problem.objectives); every evaluated design, one "

@@ -4,22 +4,37 @@
 #include <stdlib.h>
 
 #include "base/stat.h"
+#include "evaluate/adapter.h"
+#include "evaluate/race.h"
 #include "store/run_read.h"
 
 enum { WORKERS_MAX = 4096 };
 
+/* Share of choosing that is as if one processor did it alone: selection, commits, and that there are as many fits as
+ * objectives (stages of Kobe 800, timed). */
+static const double ALONE = 0.2;
+
 typedef struct {
     const SchedulePlan *plan;
     const Run *run;
-    size_t n;                         /* designs of the search */
-    double *end;                      /* (n) [s] when they are there */
-    double *choose;                   /* (n_generations) [s] of one processor for the questions of each */
-    double work, worker[WORKERS_MAX]; /* worker: [s] when each is free */
+    size_t n, n_parts, n_cheap; /* designs of the search; tasks of one, of one that is screened */
+    double *end;                /* (n) [s] when they are there */
+    double *choose;             /* (n_generations) [s] of one processor for the questions of each */
+    double worker[WORKERS_MAX]; /* [s] when each is free */
 } Replay;
 
 typedef struct {
-    double time, choosing, idle; /* [s] in all; while the search chose; of the workers together */
+    double time, work, choosing, idle; /* [s] in all; of all processors; while the search chose; of workers together */
 } Replayed;
+
+/* Tasks of a design, and the seconds of each; one that is finished has them of its cheap level too. */
+static size_t tasks_of(const Replay *r, size_t row, double *each_s)
+{
+    const Evaluation *e = &r->run->table.row[row];
+    const size_t n = e->kind == KIND_SCREENED ? r->n_cheap : r->n_parts;
+    *each_s = e->seconds / (double)n;
+    return e->kind == KIND_FINISHED ? n - r->n_cheap : n;
+}
 
 /* What the search took before each group: the time from step to step less the simulations in between, which one thread
  * does in the order of the questions. */
@@ -29,81 +44,94 @@ static void find_choosing(Replay *r)
     double before = 0.0;
     long row = 0;
     for (size_t g = 0; g < run->n_generations; g++) {
-        double simulated = 0.0;
+        double simulated = 0.0, each_s;
         for (; row < run->generation[g].simulated; row++)
-            simulated += run->table.row[row].seconds;
+            simulated += (double)tasks_of(r, (size_t)row, &each_s) * each_s;
         r->choose[g] = fmax(run->generation[g].seconds - before - simulated, 0.0);
         before = run->generation[g].seconds;
-        r->work += simulated + r->choose[g];
     }
 }
 
-static size_t first_free(const double worker[], size_t n)
-{
-    size_t first = 0;
-    for (size_t i = 1; i < n; i++)
-        if (worker[i] < worker[first])
-            first = i;
-    return first;
-}
-
-/* A group is asked at `now`, in order: each design goes to the worker that is free first. */
-static void simulate(Replay *r, size_t *next, long group, double now, double worker[], size_t n_workers, double *idle)
+/* A group is asked at `now`, in order: each task goes to the worker that is free first. */
+static void simulate(Replay *r, size_t *next, long group, double now, size_t n_workers, Replayed *out)
 {
     for (; *next < r->n && r->run->table.row[*next].generation <= group; (*next)++) {
-        double *w = &worker[first_free(worker, n_workers)];
-        *idle += fmax(now - *w, 0.0);
-        *w = r->end[*next] = fmax(*w, now) + r->run->table.row[*next].seconds;
+        double each_s;
+        r->end[*next] = 0.0;
+        for (size_t n = tasks_of(r, *next, &each_s); n > 0; n--) {
+            double *w = r->worker;
+            for (size_t i = 1; i < n_workers; i++)
+                w = r->worker[i] < *w ? &r->worker[i] : w;
+            out->idle += fmax(now - *w, 0.0);
+            *w = fmax(*w, now) + each_s;
+            r->end[*next] = fmax(r->end[*next], *w);
+        }
     }
 }
 
+/* From the first step behind r->plan->from designs on. */
 static Replayed replay(Replay *r, size_t n_workers)
 {
-    double *worker = r->worker;
+    double *worker = r->worker, began = 0.0;
     const Run *run = r->run;
+    const size_t n_apart = r->plan->apart, n_choosing = n_apart > 0 ? n_apart : n_workers;
     Replayed out = {0};
     double now = 0.0;
     size_t next = 0, entered = 0;
-    for (size_t i = 0; i < n_workers; i++)
-        worker[i] = 0.0;
+    memset(worker, 0, n_workers * sizeof *worker);
     for (size_t g = 0; g < run->n_generations; g++) {
-        const double alone = r->plan->serial * r->choose[g], shared = (r->choose[g] - alone) / (double)n_workers;
-        for (size_t i = 0; i < n_workers; i++) /* what the search takes of each processor */
+        const double alone = ALONE * r->choose[g], shared = (r->choose[g] - alone) / (double)n_choosing;
+        if (entered < (size_t)r->plan->from) {
+            began = now;
+            out = (Replayed){0};
+        }
+        for (size_t i = 0; i < n_workers && n_apart == 0; i++) /* what the search takes of each processor */
             worker[i] += shared + alone / (double)n_workers;
+        out.work += n_apart == 0 ? r->choose[g] : 0.0;
         now += alone + shared;
         out.choosing += alone + shared;
-        simulate(r, &next, (long)g, now, worker, n_workers, &out.idle);
-        for (; entered < (size_t)run->generation[g].simulated; entered++)
+        simulate(r, &next, (long)g, now, n_workers, &out);
+        for (; entered < (size_t)run->generation[g].simulated; entered++) {
+            double each_s;
+            out.work += (double)tasks_of(r, entered, &each_s) * each_s;
             now = fmax(now, r->end[entered]);
+        }
     }
-    out.time = now;
+    out.time = now - began;
     return out;
 }
 
 static void write_row(Replay *r, size_t n_workers, double critical, FILE *out)
 {
     const Replayed p = replay(r, n_workers);
-    const double ends = fmax(r->plan->ends / (double)n_workers, r->plan->chain), whole = p.time + ends;
-    fprintf(out, "%zu,%.4g,%.3f,%.4g,%.3f,%.4g,%.3f,%.3f\n", n_workers, p.time, r->work / ((double)n_workers * p.time),
-            whole, (r->work + r->plan->ends) / ((double)n_workers * whole), critical, p.choosing / p.time,
-            p.idle / ((double)n_workers * p.time));
+    const double all = (double)n_workers * p.time;
+    fprintf(out, "%zu,%.4g,%.3f,%.4g,%.3f,%.3f\n", n_workers, p.time, p.work / all, critical, p.choosing / p.time,
+            p.idle / all);
 }
 
 Status schedule(const SchedulePlan *plan, FILE *out, Err *err)
 {
     static const size_t WORKERS[] = {1, 2, 4, 8, 14, 16, 32, 64};
     Run run;
+    Adapter *a = NULL;
     TRY(run_read(&run, plan->folder, err));
     Replay r = {.plan = plan, .run = &run, .n = run.n_finished};
+    Status status = adapter_open(&a, run.settings, err);
+    if (status == STATUS_OK) {
+        const Problem *p = adapter_problem(a);
+        r.n_parts = p->n_parts;
+        r.n_cheap = p->n_cheap > 0 ? p->n_cheap : race_first(p->n_parts);
+    }
+    adapter_close(a);
     r.end = calloc(r.n + 1, sizeof *r.end);
     r.choose = calloc(run.n_generations + 1, sizeof *r.choose);
-    Status status = r.end && r.choose ? STATUS_OK : fail_memory(err, r.n, "designs");
+    THEN(status, r.end && r.choose ? STATUS_OK : fail_memory(err, r.n, "designs"));
     if (status == STATUS_OK && (run.n_sessions != 1 || run.session[0].threads != 1))
         status = bad_data(err, "%s: was not made in one session with --threads 1", plan->folder);
     if (status == STATUS_OK) {
         find_choosing(&r);
         const double critical = replay(&r, WORKERS_MAX).time;
-        fputs("workers,search_s,search_efficiency,whole_s,whole_efficiency,critical_s,choosing,idle\n", out);
+        fputs("workers,search_s,efficiency,critical_s,choosing,idle\n", out);
         for (size_t i = 0; i < N_OF(WORKERS); i++)
             write_row(&r, WORKERS[i], critical, out);
     }

@@ -97,17 +97,14 @@ static inline void expect(int code, const char *message, const char *arguments)
 }
 
 /* What it prints, with status 0; to be freed. */
-__attribute__((format(printf, 1, 2))) static inline char *output_of(const char *format, ...)
+#define output_of(...) output_from(formatted(__VA_ARGS__))
+static inline char *output_from(char *arguments)
 {
-    char arguments[2048];
     Said s;
-    va_list list;
-    va_start(list, format);
-    vsnprintf(arguments, sizeof arguments, format, list);
-    va_end(list);
     run(&s, "%s", arguments);
     if (s.code != 0)
         fail_msg("imtet %s\n  exit %d, said: %s", arguments, s.code, s.err);
+    free(arguments);
     free(s.err);
     return s.out;
 }
@@ -145,18 +142,14 @@ static inline size_t finished_in(const char *name)
     return n;
 }
 
-__attribute__((format(printf, 1, 2))) static inline json_t *json_of(const char *format, ...)
+#define json_of(...) json_from(output_of(__VA_ARGS__))
+static inline json_t *json_from(char *text)
 {
-    char arguments[2048];
     json_error_t error;
-    va_list list;
-    va_start(list, format);
-    vsnprintf(arguments, sizeof arguments, format, list);
-    va_end(list);
-    FREED char *text = output_of("%s", arguments);
     json_t *o = json_loads(text, 0, &error);
     if (!o)
-        fail_msg("imtet %s: %s", arguments, error.text);
+        fail_msg("%s in %s", error.text, text);
+    free(text);
     return o;
 }
 

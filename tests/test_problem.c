@@ -256,11 +256,8 @@ TEST(a_talkative_worker_fails_one_design_and_is_replaced)
 
 TEST(answers_that_are_no_objectives_fail_the_design_alone)
 {
-    expect_every_third("null", OUTCOME_NOT_FINITE, "2 finite numbers", 20);
-    expect_every_third("short", OUTCOME_NOT_FINITE, "2 finite numbers", 20);
-    expect_every_third("nan", OUTCOME_NOT_FINITE, "2 finite numbers", 20);
-    expect_every_third("overflow", OUTCOME_NOT_FINITE, "2 finite numbers", 20);
-    expect_every_third("infinity", OUTCOME_NOT_FINITE, "2 finite numbers", 20);
+    FOR_EACH (const char *, how, "null", "short", "nan", "overflow", "infinity")
+        expect_every_third(*how, OUTCOME_NOT_FINITE, "2 finite numbers", 20);
 }
 
 TEST(a_worker_that_never_behaves_fails_every_design_and_nothing_hangs)
