@@ -46,10 +46,11 @@ static inline size_t common_asked(const Common *c)
 static inline size_t common_ahead(const Common *c, size_t asked)
 {
     const Problem *p = c->problem;
-    size_t least = AHEAD * p->n_obj;
+    size_t least = (p->n_parts > 1 || p->is_noisy ? AHEAD_FEW : AHEAD) * p->n_obj;
     for (size_t d = 0; d < p->n_var; d++)
-        if (problem_kind(p, d) == VARIABLE_WHOLE || problem_kind(p, d) == VARIABLE_CHOICE)
-            least = AHEAD_MIXED;
+        if (p->upper[d] > p->lower[d] &&
+            (problem_kind(p, d) == VARIABLE_WHOLE || problem_kind(p, d) == VARIABLE_CHOICE))
+            least = AHEAD_FEW;
     least = MIN_OF(config_budget(c->config) / 8, least);
     return c->config->ahead >= 0 ? (size_t)c->config->ahead : MAX_OF(MIN_OF(asked / AHEAD_SHARE, 240), least);
 }

@@ -31,7 +31,7 @@ void normalisation_fit(Normalisation *q, size_t n, const size_t list[], const do
     /* Extreme point of axis k: it minimises the achievement function max_j z_j / w_j with w = 1 on the axis. */
     for (size_t k = 0; k < m; k++) {
         double min = INFINITY;
-        size_t extreme = list[0];
+        size_t extreme = *list;
         for (size_t i = 0; i < n; i++) {
             double worst = 0.0;
             for (size_t j = 0; j < m && worst < min; j++) {

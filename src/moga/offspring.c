@@ -89,11 +89,11 @@ static void add_swaps(Offspring *o, const Problem *p, Random *r, const double x[
     }
 }
 
-/* Of a group, all but one design or that one. */
+/* Of a group, all but one design or that one; half of it where luck would be taken for gain. */
 static double part_of_hypervolume(const Breeding *w)
 {
     const size_t size = batch_size(w->common);
-    const double one = 1.0 / (double)MAX_OF(size, 2);
+    const double one = w->common->problem->is_noisy ? 0.5 : 1.0 / (double)MAX_OF(size, 2);
     return credit_prefers_first(&w->criteria->credit) ? one : 1.0 - one;
 }
 

@@ -38,14 +38,14 @@ static size_t importance_of_extremes(const Criteria *q)
 /* In how many reference vectors a design is the best one, by both criteria; and the extremes. */
 static void weigh_designs(const Archive *a, const Criteria *q, size_t importance[])
 {
-    size_t knee = a->front[0];
+    size_t knee = *a->front;
     double nearest = INFINITY;
     memset(importance, 0, a->n * sizeof *importance);
     for (int kind = 0; kind < INFILL_KINDS; kind++)
         for (size_t r = 0; r < q->vectors.n; r++)
             importance[infill_best(q->select[kind], r)]++;
     for (size_t k = 0; k < a->n_obj; k++) {
-        size_t best = a->front[0];
+        size_t best = *a->front;
         for (size_t i = 1; i < a->n_front; i++)
             if (a->F[a->front[i] * a->n_obj + k] < a->F[best * a->n_obj + k])
                 best = a->front[i];

@@ -88,7 +88,7 @@ void state_free(Search *s)
 
 /* -- as bytes ------------------------------------------------------------------------------------------------------ */
 
-enum { STATE_VERSION = 20 };
+enum { STATE_VERSION = 21 };
 
 int search_state_is_current(const void *state, size_t n_state)
 {

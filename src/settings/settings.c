@@ -308,8 +308,8 @@ static const Option OPTIONS[] = {
     WHOLE(
         search.ahead, "auto", 0, 1e4,
         "batch size: designs that may be under way when the next ones are chosen; raise it above the number of "
-        "workers. auto: a 24th of the designs so far, at least 5 for each objective (3 in all where variables are int "
-        "or choice; an eighth of max_evals if less), at most 240; 0: one by one",
+        "workers. auto: a 24th of the designs so far, at least 5 for each objective (3 if noisy or in parts; 3 in all "
+        "with int or choice; an eighth of max_evals if less), at most 240; 0: one by one",
         .words = "auto"),
     CHOICE(search.fidelity, Fidelity, FIDELITY_LIST, "off",
            "which part of most designs is simulated at first: replicates: the first replicate (tower, sim.replicates "

@@ -142,7 +142,7 @@ Status database_do(Database *d, Err *err, const char *sql, const char *types, ..
 {
     sqlite3_stmt *s;
     int code = SQLITE_OK;
-    if (!types[0])
+    if (!*types)
         return sqlite3_exec(d->db, sql, NULL, NULL, NULL) == SQLITE_OK ? STATUS_OK : complain(d, err);
     TRY(database_statement(d, sql, &s, err));
     va_list values;

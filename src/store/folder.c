@@ -54,7 +54,7 @@ int folder_keeps(const char *path)
     *name++ = 0;
     for (size_t k = 0; k < N_OF(NAMES); k++)
         if (strcmp(name, NAMES[k]) == 0 || strncmp(name, "run.sqlite-", 11) == 0)
-            return folder_is_run(real[0] ? real : "/");
+            return folder_is_run(*real ? real : "/");
     return 0;
 }
 

@@ -30,7 +30,7 @@ Status notes_read(const char *folder, json_t **notes, Err *err)
     json_decref(*notes);
     *notes = NULL;
     return bad_data(err, "%s:%d: is no object of notes, \"id\": \"text\"%s%s; mend it or move it away", path,
-                    error.line > 0 ? error.line : 1, error.text[0] ? ": " : "", error.text);
+                    error.line > 0 ? error.line : 1, *error.text ? ": " : "", error.text);
 }
 
 Status notes_of_run(const Run *run, json_t **notes, Err *err)
@@ -65,7 +65,7 @@ static Status put(const char *folder, long id, const char *text, Err *err)
         return bad_data(err, "a note has at most %d bytes", NOTE_BYTES_MAX);
     folder_path(folder, NOTES, path);
     TRY(notes_read(folder, &notes, err));
-    if (text[0])
+    if (*text)
         json_object_set_new(notes, key, json_string(text));
     else
         json_object_del(notes, key);

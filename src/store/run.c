@@ -193,7 +193,7 @@ void run_drop_polished(Run *run)
 
 size_t run_best(const Run *run, size_t objective)
 {
-    size_t best = run->front[0];
+    size_t best = *run->front;
     for (size_t i = 1; i < run->n_front; i++)
         if (minimised(run, run->front[i], objective) < minimised(run, best, objective))
             best = run->front[i];
@@ -230,7 +230,7 @@ double run_distance2(const Run *run, const FrontBox *box, size_t row, size_t oth
 
 size_t run_knee(const Run *run)
 {
-    size_t knee[1] = {run->front[0]};
+    size_t knee[1] = {*run->front};
     run_spread_out(run, 1, 1, knee);
     return *knee;
 }

@@ -299,7 +299,7 @@ int runs_each(const char *folder, RunFolderFn take, void *user)
     for (int i = 0; i < n; i++) {
         const char *name = entries[i]->d_name;
         const int has_room = snprintf(path, sizeof path, "%s/%s", folder, name) < PATH_MAX;
-        if (name[0] != '.' && has_room && run_is_there(path))
+        if (*name != '.' && has_room && run_is_there(path))
             take(path, name, user);
         free(entries[i]);
     }

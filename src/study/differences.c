@@ -59,7 +59,7 @@ Status differences_check(const Comparison *c, size_t n_there, int *has_new_limit
 
     /* 2. Another rounding is no other setting, but from here on it is another search. */
     provenance_blas(provenance, kernels);
-    if (c->lines && kernels[0] && strcmp(kernels, linalg_kernel_name()) != 0)
+    if (c->lines && *kernels && strcmp(kernels, linalg_kernel_name()) != 0)
         fprintf(c->lines,
                 "note: linear algebra by the kernels %s in the run, now %s: rounded differently, the search goes on "
                 "otherwise than it would there\n",

@@ -82,7 +82,7 @@ Status improver_check(const Improver *m, Err *err)
     return bad_data(err,
                     "the design fails when it is simulated again, %ld times (%s%s%s): choose another one, or as many "
                     "replicates as the run made",
-                    m->replicates, outcome_word(last->outcome), last->reason[0] ? ": " : "", last->reason);
+                    m->replicates, outcome_word(last->outcome), *last->reason ? ": " : "", last->reason);
 }
 
 double improver_path(const Improver *m, size_t i, size_t k)

@@ -80,7 +80,7 @@ static double session_seconds(const Run *run, size_t number)
 {
     const RunSession *s = &run->session[number];
     const double stored = isfinite(s->seconds) ? s->seconds : 0.0;
-    if (s->ended[0])
+    if (*s->ended)
         return stored;
     return fmax(stored, simulated_seconds(run, number) / fmax((double)s->threads, 1.0));
 }
@@ -93,7 +93,7 @@ void standing_of(Standing *out, const char *folder, const Run *run)
     const RunSession *last = run->n_sessions > 0 ? &run->session[run->n_sessions - 1] : NULL;
     out->state = folder_is_held(folder, &out->holder) ? RUN_RUNNING
                  : last && last->is_final             ? RUN_FINISHED
-                 : last && last->ended[0]             ? RUN_PAUSED
+                 : last && *last->ended             ? RUN_PAUSED
                                                       : RUN_INTERRUPTED;
     for (size_t i = 0; i < run->table.n; i++) {
         const int polished = run->table.row[i].kind == KIND_POLISHED;

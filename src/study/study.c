@@ -411,7 +411,7 @@ static Status finish(Study *study, Err *err)
     if (!is_final)
         sum->stopped = study->failing ? STOP_FAILURES : study->late ? STOP_TIME : STOP_ASKED;
     size_t n_ranks;
-    const char *why = study->lost[0] ? study->lost
+    const char *why = *study->lost ? study->lost
                       : sum->stopped == STOP_ASKED && study->asked == SIGTERM && cluster_executor(&n_ranks)
                           ? "stopped by SIGTERM (mpirun: a rank has died, or it was asked to end)"
                           : stop_reason_words(sum->stopped);
