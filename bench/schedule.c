@@ -24,6 +24,7 @@ typedef struct {
 } Replay;
 
 typedef struct {
+    double reached;                    /* [s] when the designs of plan->from were there */
     double time, work, choosing, idle; /* [s] in all; of all processors; while the search chose; of workers together */
 } Replayed;
 
@@ -53,7 +54,7 @@ static void find_choosing(Replay *r)
 }
 
 /* A group is asked at `now`, in order: each task goes to the worker that is free first. */
-static void simulate(Replay *r, size_t *next, long group, double now, size_t n_workers, Replayed *out)
+static void simulate(Replay *r, size_t *next, long group, double now, size_t n_workers, double began, Replayed *out)
 {
     for (; *next < r->n && r->run->table.row[*next].generation <= group; (*next)++) {
         double each_s;
@@ -62,39 +63,34 @@ static void simulate(Replay *r, size_t *next, long group, double now, size_t n_w
             double *w = r->worker;
             for (size_t i = 1; i < n_workers; i++)
                 w = r->worker[i] < *w ? &r->worker[i] : w;
-            out->idle += fmax(now - *w, 0.0);
-            *w = fmax(*w, now) + each_s;
+            const double start = fmax(*w, now);
+            out->idle += fmax(start - fmax(*w, began), 0.0);
+            *w = start + each_s;
+            out->work += fmax(*w - fmax(start, began), 0.0);
             r->end[*next] = fmax(r->end[*next], *w);
         }
     }
 }
 
-/* From the first step behind r->plan->from designs on. */
-static Replayed replay(Replay *r, size_t n_workers)
+/* What is done from `began` on. */
+static Replayed replay(Replay *r, size_t n_workers, double began)
 {
-    double *worker = r->worker, began = 0.0;
-    const Run *run = r->run;
-    const size_t n_apart = r->plan->apart, n_choosing = n_apart > 0 ? n_apart : n_workers;
+    const size_t n_apart = (size_t)r->plan->apart, n_choosing = n_apart > 0 ? n_apart : n_workers;
     Replayed out = {0};
-    double now = 0.0;
     size_t next = 0, entered = 0;
-    memset(worker, 0, n_workers * sizeof *worker);
-    for (size_t g = 0; g < run->n_generations; g++) {
+    double now = 0.0;
+    memset(r->worker, 0, n_workers * sizeof *r->worker);
+    for (size_t g = 0; g < r->run->n_generations; g++) {
         const double alone = ALONE * r->choose[g], shared = (r->choose[g] - alone) / (double)n_choosing;
-        if (entered < (size_t)r->plan->from) {
-            began = now;
-            out = (Replayed){0};
-        }
         for (size_t i = 0; i < n_workers && n_apart == 0; i++) /* what the search takes of each processor */
-            worker[i] += shared + alone / (double)n_workers;
-        out.work += n_apart == 0 ? r->choose[g] : 0.0;
+            r->worker[i] += shared + alone / (double)n_workers;
+        out.work += now >= began && n_apart == 0 ? r->choose[g] : 0.0;
+        out.choosing += now >= began ? alone + shared : 0.0;
         now += alone + shared;
-        out.choosing += alone + shared;
-        simulate(r, &next, (long)g, now, n_workers, &out);
-        for (; entered < (size_t)run->generation[g].simulated; entered++) {
-            double each_s;
-            out.work += (double)tasks_of(r, entered, &each_s) * each_s;
+        simulate(r, &next, (long)g, now, n_workers, began, &out);
+        for (; entered < (size_t)r->run->generation[g].simulated; entered++) {
             now = fmax(now, r->end[entered]);
+            out.reached = entered < (size_t)r->plan->from ? now : out.reached;
         }
     }
     out.time = now - began;
@@ -103,7 +99,7 @@ static Replayed replay(Replay *r, size_t n_workers)
 
 static void write_row(Replay *r, size_t n_workers, double critical, FILE *out)
 {
-    const Replayed p = replay(r, n_workers);
+    const Replayed p = replay(r, n_workers, replay(r, n_workers, 0.0).reached);
     const double all = (double)n_workers * p.time;
     fprintf(out, "%zu,%.4g,%.3f,%.4g,%.3f,%.3f\n", n_workers, p.time, p.work / all, critical, p.choosing / p.time,
             p.idle / all);
@@ -117,10 +113,11 @@ Status schedule(const SchedulePlan *plan, FILE *out, Err *err)
     TRY(run_read(&run, plan->folder, err));
     Replay r = {.plan = plan, .run = &run, .n = run.n_finished};
     Status status = adapter_open(&a, run.settings, err);
-    if (status == STATUS_OK) {
+    if (status == STATUS_OK) { /* with replicates the first of each record is cheap */
         const Problem *p = adapter_problem(a);
+        const size_t n_records = p->n_cheap > 0 ? p->n_cheap : p->n_parts;
         r.n_parts = p->n_parts;
-        r.n_cheap = p->n_cheap > 0 ? p->n_cheap : race_first(p->n_parts);
+        r.n_cheap = run.settings->search.fidelity == FIDELITY_RECORDS ? race_first(n_records) : n_records;
     }
     adapter_close(a);
     r.end = calloc(r.n + 1, sizeof *r.end);
@@ -128,9 +125,11 @@ Status schedule(const SchedulePlan *plan, FILE *out, Err *err)
     THEN(status, r.end && r.choose ? STATUS_OK : fail_memory(err, r.n, "designs"));
     if (status == STATUS_OK && (run.n_sessions != 1 || run.session[0].threads != 1))
         status = bad_data(err, "%s: was not made in one session with --threads 1", plan->folder);
+    if (status == STATUS_OK && (size_t)plan->from >= r.n)
+        status = bad_data(err, "%s: --from %ld: it has %zu finished designs", plan->folder, plan->from, r.n);
     if (status == STATUS_OK) {
         find_choosing(&r);
-        const double critical = replay(&r, WORKERS_MAX).time;
+        const double critical = replay(&r, WORKERS_MAX, replay(&r, WORKERS_MAX, 0.0).reached).time;
         fputs("workers,search_s,efficiency,critical_s,choosing,idle\n", out);
         for (size_t i = 0; i < N_OF(WORKERS); i++)
             write_row(&r, WORKERS[i], critical, out);

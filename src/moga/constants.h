@@ -12,7 +12,7 @@ enum { INITIAL_OFFSET = 12 };      /* ... */
 /* -- common.h: look-ahead: questions whose answers are not known yet when the next ones are made ------------------- */
 
 enum { AHEAD = 5 };        /* for each objective, at least: so many directions are searched side by side */
-enum { AHEAD_FEW = 3 };    /* noisy ones, and those in parts; in all where there are whole numbers or choices */
+enum { AHEAD_FEW = 3 };    /* ... of noisy designs or of several parts; in all with whole numbers or choices */
 enum { AHEAD_SHARE = 24 }; /* questions / this, where that is more */
 
 /* -- state.c: reference vectors of infill ------------------------------------------------------------------------- */

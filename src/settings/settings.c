@@ -305,12 +305,11 @@ static const Option OPTIONS[] = {
           "stop when so many simulations in a row have failed, because something is wrong with all of them; 0: never",
           .flags = SETTING_FREE),
     CHOICE(search.surrogate, SurrogateUse, SURROGATE_USE_LIST, "on", "off: evolutionary search without a surrogate"),
-    WHOLE(
-        search.ahead, "auto", 0, 1e4,
-        "batch size: designs that may be under way when the next ones are chosen; raise it above the number of "
-        "workers. auto: a 24th of the designs so far, at least 5 for each objective (3 if noisy or in parts; 3 in all "
-        "with int or choice; an eighth of max_evals if less), at most 240; 0: one by one",
-        .words = "auto"),
+    WHOLE(search.ahead, "auto", 0, 1e4,
+          "batch size: designs that may be under way when the next ones are chosen; raise it above the number of "
+          "workers. auto: a 24th of the designs so far, at least 5 for each objective (3 with noise, replicates or "
+          "records; 3 in all with int or choice; an eighth of max_evals if less), at most 240; 0: one by one",
+          .words = "auto"),
     CHOICE(search.fidelity, Fidelity, FIDELITY_LIST, "off",
            "which part of most designs is simulated at first: replicates: the first replicate (tower, sim.replicates "
            ">= 2); records: a fifth of motion.records, four at most. The rest follows where it promises most"),
