@@ -142,7 +142,7 @@ static inline size_t finished_in(const char *name)
     return n;
 }
 
-#define json_of(...) json_from(output_of(__VA_ARGS__))
+#define as_json(...) json_from(output_of(__VA_ARGS__))
 static inline json_t *json_from(char *text)
 {
     json_error_t error;

@@ -201,7 +201,7 @@ static long failed_where_one_waits(const char *name, int tenths, const char *mor
     free(output_of("optimize @/uneven.ini --out @/%s --max-evals 60 --set 'problem.command=sh tests/worker.sh waits "
                    "@/%s.ids 38 %d' %s",
                    name, name, tenths, more));
-    json_auto_t *o = json_of("status @/%s --json", name);
+    json_auto_t *o = as_json("status @/%s --json", name);
     const long failed = (long)number(o, "failed");
     assert_same_number(number(o, "simulated"), 60);
     return failed;

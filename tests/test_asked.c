@@ -15,7 +15,7 @@ static void write_study(const char *name, const char *mode)
 TEST(check_asks_the_worker_one_design_and_says_its_answer_and_the_time_of_the_study)
 {
     write_study("kinds.ini", "bounded");
-    json_auto_t *o = json_of("check @/kinds.ini --json");
+    json_auto_t *o = as_json("check @/kinds.ini --json");
     const json_t *worker = json_object_get(o, "worker"), *study = json_object_get(o, "study");
     assert_true(number(worker, "x1") == 10.0);
     assert_true(number(worker, "f1") == 10.0);
@@ -55,7 +55,7 @@ TEST(simulate_takes_one_design_of_a_run_or_a_file_and_refuses_what_only_a_tower_
 {
     write_study("kinds.ini", "bounded");
     write_in_place("mine.csv", "x3,x2,x1\na,4,7\nb,1,2\n");
-    json_t *all = json_of("simulate @/kinds.ini --design @/mine.csv:2 --json"), *one = json_array_get(all, 0);
+    json_t *all = as_json("simulate @/kinds.ini --design @/mine.csv:2 --json"), *one = json_array_get(all, 0);
     assert_true(number(one, "f2") == 20 - 2 + 1 + 3);
     assert_string_equal(json_string_value(json_object_get(one, "x3")), "b");
     json_decref(all);

@@ -421,7 +421,7 @@ static json_t *by_two_engines(const char *options)
 {
     json_t *both = json_array();
     for (int i = 0; i < 2; i++)
-        json_array_append_new(both, json_of("simulate configs/quick.ini --set motion.stretch=1 --set sim.accuracy=fine "
+        json_array_append_new(both, as_json("simulate configs/quick.ini --set motion.stretch=1 --set sim.accuracy=fine "
                                             "--json --contacts @/contacts-%d.csv --set sim.engine=%s %s",
                                             i, i ? "cvode" : "fast", options));
     const json_t *fast = json_array_get(both, 0), *cvode = json_array_get(both, 1);
@@ -599,7 +599,7 @@ TEST(a_portal_of_heavy_columns_responds_as_its_full_model_in_two_engines)
                                         "near.csv --set sim.engine=fast", "near.csv --set sim.engine=cvode"};
     json_t *r[4];
     for (int i = 0; i < 4; i++) {
-        r[i] = json_of("simulate configs/quick.ini --set building.model=@/columns --set sim.duration_s=20 --set "
+        r[i] = as_json("simulate configs/quick.ini --set building.model=@/columns --set sim.duration_s=20 --set "
                        "sim.accuracy=fine --json --design @/columns/%s",
                        CASES[i]);
     }
@@ -614,7 +614,7 @@ TEST(a_portal_of_heavy_columns_responds_as_its_full_model_in_two_engines)
     const double mass = 6250 * (8 - 2 * 0.5 * (1 - 156.0 / 420)) + 1666.7 * 6;
     double shear[2];
     for (int i = 0; i < 2; i++) {
-        json_auto_t *all = json_of("check configs/quick.ini --set building.model=@/columns --json --set %s",
+        json_auto_t *all = as_json("check configs/quick.ini --set building.model=@/columns --json --set %s",
                                    strstr(CASES[i], "building.modes"));
         const json_t *b = json_object_get(all, "building");
         assert_close(number(b, "mass_kg"), mass, 1e-9);
@@ -622,7 +622,7 @@ TEST(a_portal_of_heavy_columns_responds_as_its_full_model_in_two_engines)
     }
     assert_close(shear[0], shear[1], 0.02);
     FREED char *said = output_of("building @/columns");
-    json_auto_t *all = json_of("building @/columns --json");
+    json_auto_t *all = as_json("building @/columns --json");
     const double floor = number(json_array_get(json_object_get(all, "floors"), 0), "mass_kg");
     assert_true(floor > 1666.7 * 6 && floor < 0.8 * mass);
     assert_words(said, brief("%.6g t of it are between the floors\n", 1e-3 * (mass - floor)));
@@ -692,7 +692,7 @@ TEST(a_floor_that_one_node_stands_for_is_warned_of_where_periods_move)
         run(&all, "%s --set building.modes=100", command);
         assert_false(strstr(all.err, "one node") || strstr(all.out, "one node"));
     }
-    json_auto_t *all = json_of("building @/soft --json --set building.rigid_floors=off --set building.modes=100");
+    json_auto_t *all = as_json("building @/soft --json --set building.rigid_floors=off --set building.modes=100");
     assert_close(number(json_array_get(json_object_get(all, "modes"), 0), "hz"), 1 / should, 1e-9);
 }
 
@@ -734,7 +734,7 @@ TEST(the_full_model_is_simulated_alike_by_two_engines)
 
 TEST(a_building_is_summed_up_and_drawn)
 {
-    json_auto_t *o = json_of("building configs/sac20/frame %s--json", has_browser() ? "--svg @/frame.svg " : "");
+    json_auto_t *o = as_json("building configs/sac20/frame %s--json", has_browser() ? "--svg @/frame.svg " : "");
     const BuildingOptions options = scene_defaults().building;
     OWNED(building_free) Building b = load(&options);
     assert_int_equal((int)number(o, "nodes"), 180);
@@ -773,7 +773,7 @@ TEST(a_drawing_shows_names_as_text_and_storeys_as_a_stick)
 
 TEST(modes_have_shapes_that_are_listed)
 {
-    json_auto_t *m = json_of("building configs/quick.ini --json");
+    json_auto_t *m = as_json("building configs/quick.ini --json");
     const json_t *shapes = json_object_get(m, "building_shapes"), *share = json_object_get(m, "building_mass_share");
     double sum = 0;
     assert_int_equal((int)json_array_size(shapes), 20);

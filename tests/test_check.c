@@ -31,7 +31,7 @@ static void expect_warnings(const char *wanted, const char *arguments)
 {
     char keys[512] = "";
     size_t i;
-    json_auto_t *o = json_of("check @/six.ini --json %s", arguments);
+    json_auto_t *o = as_json("check @/six.ini --json %s", arguments);
     json_t *w;
     assert_int_equal(json_array_size(json_object_get(o, "faults")), 0);
     json_array_foreach(json_object_get(o, "warnings"), i, w)
@@ -79,7 +79,7 @@ TEST(a_sound_building_is_in_order_with_its_figures)
     expect_warnings("core.width_m", "--set core.width_m=14");
     expect_text("is there room for such a core?", "--set core.width_m=14");
     expect_output("everything is in order", "check @/six.ini");
-    json_auto_t *o = json_of("check @/six.ini --json");
+    json_auto_t *o = as_json("check @/six.ini --json");
     const json_t *b = json_object_get(o, "building"), *motion = json_object_get(o, "motion");
     assert_close(number(b, "mass_kg"), 6 * 3e5, 1e-12);
     assert_close(number(b, "weight_n"), 6 * 3e5 * 9.81, 1e-12);
@@ -158,7 +158,7 @@ TEST(units_are_taken_from_the_comments_of_the_files)
         FREED char *stiffness = formatted("%s%.17g,%.17g\n%.17g,%.17g\n", CASES[i].K, 2 * k, -k, -k, k);
         write_in_place(brief("%s/K.csv", folder), stiffness);
         write_in_place(brief("%s/M.csv", folder), brief("%s%.17g,0\n0,%.17g\n", CASES[i].M, m, m));
-        json_auto_t *o = json_of("building @/%s --json", folder);
+        json_auto_t *o = as_json("building @/%s --json", folder);
         assert_close(number(o, "mass_kg"), 6e5, 1e-12);
         const json_t *mode = json_array_get(json_object_get(o, "modes"), 0);
         assert_close(number(mode, "hz"), sqrt(1e3) * (sqrt(5) - 1) / (4 * M_PI), 1e-9);
@@ -329,7 +329,7 @@ TEST(the_base_shear_of_one_mass_is_its_spectral_acceleration)
 /* What check says of a study's times by itself; how fast this machine is only scales them. */
 static double part_of_study(const char *part, const char *sets)
 {
-    json_auto_t *o = json_of("check @/six.ini --json --set search.max_evals=150 --set search.threads=2 %s", sets);
+    json_auto_t *o = as_json("check @/six.ini --json --set search.max_evals=150 --set search.threads=2 %s", sets);
     const json_t *study = json_object_get(o, "study");
     return part ? number(study, part)
                 : (number(study, "seconds") - number(study, "search_s") - number(study, "baselines_s")) /
@@ -360,7 +360,7 @@ TEST(the_designs_that_are_tried_collide_where_gaps_of_the_box_do)
 {
 #define COLLIDES "check @/six.ini --set sim.duration_s=8 --set core.width_m=5 "
     write_building(1, 1, 0);
-    json_auto_t *o = json_of(COLLIDES "--ladder --json");
+    json_auto_t *o = as_json(COLLIDES "--ladder --json");
     const json_t *tried = json_object_get(json_object_get(o, "study"), "impacts");
     const json_t *of = json_object_get(json_object_get(o, "ladder"), "design");
     const double chosen = number(of, "impacts");
@@ -390,7 +390,7 @@ TEST(designs_of_a_file_are_simulated_one_by_one)
     write_building(1, 1, 0);
     write_in_place("both.csv", "gap_01_m,gap_02_m,gap_03_m,gap_04_m,gap_05_m,gap_06_m,t_base_m,t_top_m\n"
                                "5,5,5,5,5,5,0.012,0.01\n0.001,0.001,0.001,0.001,0.001,0.001,0.012,0.01\n");
-    json_auto_t *o = json_of(COLLIDES "--design @/both.csv --json");
+    json_auto_t *o = as_json(COLLIDES "--design @/both.csv --json");
     const json_t *impacts = json_object_get(json_object_get(o, "study"), "impacts");
     assert_int_equal(json_array_size(impacts), 2);
     assert_int_equal(json_integer_value(json_array_get(impacts, 0)), 0);
@@ -410,7 +410,7 @@ TEST(what_is_wrong_stands_below_everything_else)
 
 static double search_time(const char *settings)
 {
-    json_auto_t *o = json_of("check configs/quick.ini " SIX_FLOORS
+    json_auto_t *o = as_json("check configs/quick.ini " SIX_FLOORS
                              "--json --set sim.duration_s=3 --set motion.record=builtin:suite-01 --set "
                              "motion.records=builtin:suite-02,builtin:suite-03,builtin:suite-04 %s",
                              settings);
@@ -462,7 +462,7 @@ TEST(a_study_of_the_most_floors_ends_and_has_all_cases_that_it_is_compared_with)
 /* Also a test of selftest itself: every check has something to compare, and says by how much it may differ. */
 TEST(this_build_gives_the_stored_answers)
 {
-    json_auto_t *all = json_of("check --self --json");
+    json_auto_t *all = as_json("check --self --json");
     json_t *check;
     size_t i, n_zero = 0;
     assert_true(json_is_true(json_object_get(all, "trusted")));

@@ -21,18 +21,18 @@ static void write_designs(const char *name, int n, const double gap[], const dou
 
 TEST(optimize_and_polish_answer_as_json)
 {
-    json_auto_t *study = json_of("optimize configs/quick.ini " SIX_FLOORS
+    json_auto_t *study = as_json("optimize configs/quick.ini " SIX_FLOORS
                                  "--max-evals 60 --set sim.duration_s=4 --set search.initial=30 "
                                  "--set search.population=16 --out @/spoken --json");
     json_t *knee = json_object_get(study, "knee");
     assert_int_equal(json_integer_value(json_object_get(study, "simulated")), 60);
     FREED char *design = formatted("simulate @/spoken/settings.ini --design @/spoken:%" JSON_INTEGER_FORMAT " --json",
                                    json_integer_value(json_object_get(knee, "design")));
-    json_auto_t *alone = json_of("%s", design);
+    json_auto_t *alone = as_json("%s", design);
     assert_close(number(knee, "j1_m"), number(alone, "j1_m"), 1e-3);
     assert_at_most(number(json_object_get(json_object_get(study, "best"), "j1_m"), "j1_m"), number(knee, "j1_m"));
     assert_true(json_object_get(json_object_get(study, "baselines"), "links") != NULL);
-    json_auto_t *polished = json_of("polish @/spoken --design knee --improve j2_m --max-evals 24 --json");
+    json_auto_t *polished = as_json("polish @/spoken --design knee --improve j2_m --max-evals 24 --json");
     json_t *row = json_array_get(json_object_get(polished, "polished"), 0);
     assert_close(number(row, "j1_m_before"), number(knee, "j1_m"), 1e-2);
     assert_non_null(json_string_value(json_object_get(polished, "verdict")));
@@ -41,7 +41,7 @@ TEST(optimize_and_polish_answer_as_json)
 TEST(the_spectrum_is_the_same_as_json_and_as_csv)
 {
     json_auto_t *o =
-        json_of("spectrum builtin:kobe-like --pga 0.3 --set motion.stretch=3.1 --json --csv @/spectrum.csv");
+        as_json("spectrum builtin:kobe-like --pga 0.3 --set motion.stretch=3.1 --json --csv @/spectrum.csv");
     OWNED(table_free) Table t = table_of("spectrum.csv");
     assert_close(number(o, "pga_g"), 0.3, 1e-12);
     const json_t *psa = json_object_get(o, "psa_m_s2");
@@ -53,7 +53,7 @@ TEST(the_spectrum_is_the_same_as_json_and_as_csv)
 /* Husid's curve ends at 1, velocity and displacement reach the peaks of the table. */
 TEST(the_histories_reach_the_figures_of_the_motion)
 {
-    json_auto_t *o = json_of("spectrum tests/motion/jma.csv --set motion.channel=EW --json --history @/history.csv");
+    json_auto_t *o = as_json("spectrum tests/motion/jma.csv --set motion.channel=EW --json --history @/history.csv");
     OWNED(table_free) Table t = table_of("history.csv");
     assert_int_equal(t.n_rows, 43);
     assert_int_equal(t.n_cols, 5);
@@ -77,7 +77,7 @@ TEST(the_histories_reach_the_figures_of_the_motion)
 TEST(simulate_gives_the_same_numbers_as_json_and_as_csv)
 {
     write_designs("two.csv", 2, (double[]){0.001, 0.004}, (double[]){0.012, 0.03}, (double[]){0.0064, 0.01});
-    json_auto_t *list = json_of("simulate configs/quick.ini" SHORT "--design @/two.csv --json");
+    json_auto_t *list = as_json("simulate configs/quick.ini" SHORT "--design @/two.csv --json");
     free(output_of("simulate configs/quick.ini" SHORT "--design @/two.csv --csv @/results.csv"));
     char *csv = read_in_place("results.csv"), *line, *rest = csv;
     assert_text(output_of("simulate configs/quick.ini" SHORT "--design @/two.csv --csv -"), csv);
@@ -137,13 +137,13 @@ TEST(a_building_of_five_floors_goes_all_the_way)
     const double k = 4e8, m = 6e5;
     write_five_floors(k, m);
     free(output_of("check @/five.ini"));
-    json_auto_t *o = json_of("building @/five.ini --json");
+    json_auto_t *o = as_json("building @/five.ini --json");
     for (int i = 0; i < 5; i++)
         assert_close(json_real_value(json_array_get(json_object_get(o, "building_hz"), (size_t)i)),
                      sqrt(k / m) * sin((2 * i + 1) * M_PI / 22) / M_PI, 1e-9);
 
-    json_auto_t *fast = json_of("simulate @/five.ini --design @/five.csv --set sim.accuracy=fine --json");
-    json_auto_t *slow = json_of("simulate @/five.ini --design @/five.csv --set sim.engine=cvode --json");
+    json_auto_t *fast = as_json("simulate @/five.ini --design @/five.csv --set sim.accuracy=fine --json");
+    json_auto_t *slow = as_json("simulate @/five.ini --design @/five.csv --set sim.engine=cvode --json");
     assert_int_equal(json_array_size(json_object_get(fast, "peak_drift_m")), 5);
     assert_less(10, number(fast, "impacts"));
     assert_close(number(fast, "j1_m"), number(slow, "j1_m"), 1e-3);

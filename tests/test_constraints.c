@@ -34,7 +34,7 @@ TEST(the_front_is_that_of_the_designs_whose_constraints_are_kept)
         assert_true(e->violation == fmax(e->extra[0], 0.0) + fmax(e->extra[1], 0.0));
     }
     assert_starts_with("bounded/front.csv", "id,x1,x2,x3,f1,f2,g_1,g_2\n");
-    json_auto_t *all = json_of("export @/bounded --json");
+    json_auto_t *all = as_json("export @/bounded --json");
     json_t *last = json_array_get(json_object_get(all, "columns"), 6);
     assert_string_equal(json_string_value(json_object_get(last, "role")), "constraint");
 }

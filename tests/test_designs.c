@@ -30,7 +30,7 @@ static void make_run(void)
 
 static double j1_of(const char *word)
 {
-    json_auto_t *o = json_of(SIMULATE "%s", word);
+    json_auto_t *o = as_json(SIMULATE "%s", word);
     return number(o, "j1_m");
 }
 
@@ -62,7 +62,7 @@ TEST(a_row_of_a_design_file_is_taken_by_its_number)
             strcat(row[i], i ? "0.02," : "0.2,");
     }
     write_in_place("two.csv", brief("%st_base_m,t_top_m\n%s0.02,0.01\n%s0.03,0.02\n", header, row[0], row[1]));
-    json_auto_t *both = json_of(SIMULATE "@/two.csv");
+    json_auto_t *both = as_json(SIMULATE "@/two.csv");
     assert_same_number(number(json_array_get(both, 1), "j1_m"), j1_of("@/two.csv:2"));
     assert_true(number(json_array_get(both, 0), "j1_m") != j1_of("@/two.csv:2"));
     expect(65, "has no design 3; it holds 2", SIMULATE "@/two.csv:3");
@@ -72,7 +72,7 @@ TEST(a_row_of_a_design_file_is_taken_by_its_number)
 TEST(designs_off_the_front_stay_addressable)
 {
     assert_same_number(j1_of(brief("@/run:%ld", known.off)), known.off_j1);
-    json_auto_t *o = json_of("evaluate @/run --design %ld --json", known.off);
+    json_auto_t *o = as_json("evaluate @/run --design %ld --json", known.off);
     const json_t *first = json_array_get(json_object_get(o, "records"), 0);
     assert_same_number(number(json_object_get(first, "with_core"), "j1_m"), known.off_j1);
     free(output_of("report @/run --design %ld --record builtin:sylmar-like --out @/off.html", known.off));
@@ -85,15 +85,15 @@ TEST(evaluate_without_a_record_takes_those_of_the_run)
     assert_same_output("evaluate @/run --design knee", "evaluate @/run --design knee --record builtin:kobe-like");
     free(output_of("optimize configs/quick.ini --out @/both --max-evals 8 --set search.initial=8 "
                    "--set search.population=8 --set search.polish=0 --set motion.records=builtin:sylmar-like " SHORT));
-    json_auto_t *o = json_of("evaluate @/both --design knee --json");
+    json_auto_t *o = as_json("evaluate @/both --design knee --json");
     assert_int_equal(json_array_size(json_object_get(o, "records")), 2);
 }
 
 TEST(evaluate_takes_a_design_from_elsewhere)
 {
     /* Of a design that the study has not named: by the steps of the settings. */
-    json_auto_t *o = json_of("evaluate @/both --design @/run:%ld --json", known.off),
-                *own = json_of("evaluate @/run --design %ld --json", known.off);
+    json_auto_t *o = as_json("evaluate @/both --design @/run:%ld --json", known.off),
+                *own = as_json("evaluate @/run --design %ld --json", known.off);
     const json_t *there = json_array_get(json_object_get(o, "records"), 0);
     const json_t *here = json_array_get(json_object_get(own, "records"), 0);
     assert_non_null(strstr(json_string_value(json_object_get(o, "design")), "/run:"));
@@ -105,7 +105,7 @@ TEST(evaluate_takes_a_design_from_elsewhere)
 TEST(evaluate_compares_with_devices_and_replicates_have_a_named_deviation)
 {
     json_auto_t *o =
-        json_of("evaluate @/run --design knee --json --replicates 3 --set sim.uncertain=contact_stiffness=0.2");
+        as_json("evaluate @/run --design knee --json --replicates 3 --set sim.uncertain=contact_stiffness=0.2");
     const json_t *record = json_array_get(json_object_get(o, "records"), 0);
     assert_less(0, number(json_object_get(record, "links"), "link_ns_m"));
     assert_less(0, number(json_object_get(record, "tmd"), "stroke_m"));
@@ -122,7 +122,7 @@ TEST(chances_are_among_all_numbers_and_deviations_are_named_by_what_varies)
 #define TWO_RECORDS                                                                                                    \
     "simulate configs/quick.ini --design @/run:knee --set motion.records=builtin:sylmar-like --set "                   \
     "'search.objectives=j1_m,p(drift_ratio>0.003)' --set sim.robust=mean_plus_sd " SHORT
-    json_auto_t *o = json_of(TWO_RECORDS "--json");
+    json_auto_t *o = as_json(TWO_RECORDS "--json");
     const json_t *all = json_object_get(o, "replicates");
     assert_true(json_is_number(json_object_get(o, "p(drift_ratio>0.003)")));
     assert_true(json_is_number(json_object_get(json_object_get(all, "mean"), "p(drift_ratio>0.003)")));
@@ -135,8 +135,8 @@ TEST(chances_are_among_all_numbers_and_deviations_are_named_by_what_varies)
 
 TEST(evaluate_and_simulate_estimate_the_same_error_and_a_study_shows_that_of_its_knee)
 {
-    json_auto_t *o = json_of("evaluate @/run --design %ld --json", known.off);
-    json_auto_t *one = json_of(SIMULATE "@/run:%ld", known.off);
+    json_auto_t *o = as_json("evaluate @/run --design %ld --json", known.off);
+    json_auto_t *one = as_json(SIMULATE "@/run:%ld", known.off);
     const json_t *core = json_object_get(json_array_get(json_object_get(o, "records"), 0), "with_core");
     const json_t *error = json_object_get(core, "estimated_error"), *wanted = json_object_get(one, "estimated_error");
     assert_less(0, number(wanted, "j3_g"));
@@ -152,7 +152,7 @@ TEST(evaluate_and_simulate_estimate_the_same_error_and_a_study_shows_that_of_its
 
 TEST(choose_names_the_extremes_and_writes_them)
 {
-    json_t *o = json_of("choose @/run --json --weights j1_m=1"), *list = json_object_get(o, "designs");
+    json_t *o = as_json("choose @/run --json --weights j1_m=1"), *list = json_object_get(o, "designs");
     assert_int_equal(json_array_size(list), 1 + 7 + 1);
     size_t i;
     json_t *pick;
@@ -176,7 +176,7 @@ TEST(choose_limits_any_result_of_a_run)
     OWNED(run_free) Run h = run_in("run");
     CHECK_OK(schema_pick(&h.schema, h.schema.n_obj + h.schema.n_extra, "", "drift_ratio", &k, &err), &err);
     const double bound = h.table.row[run_knee(&h)].extra[k - h.schema.n_obj];
-    json_auto_t *o = json_of("choose @/run --json --max drift_ratio=%.17g", bound);
+    json_auto_t *o = as_json("choose @/run --json --max drift_ratio=%.17g", bound);
     json_t *pick;
     assert_less(0, json_array_size(json_object_get(o, "designs")));
     json_array_foreach(json_object_get(o, "designs"), i, pick)
@@ -195,7 +195,7 @@ TEST(a_knee_within_limits_is_told_from_that_of_the_front)
     static const char *const NAMES[] = {"j1_m", "j2_m", "j3_g", "mcore_kg"};
     char words[200] = "";
     size_t i;
-    json_auto_t *o = json_of("choose @/run --json");
+    json_auto_t *o = as_json("choose @/run --json");
     json_t *list = json_object_get(o, "designs"), *pick;
     const json_t *knee = json_object_get(json_array_get(list, 0), "objectives");
     json_array_foreach(list, i, pick) for (int k = 0; k < 4; k++)

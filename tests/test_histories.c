@@ -45,7 +45,7 @@ TEST(forces_of_a_history_are_those_of_the_contact_law)
 {
     write_design();
     json_auto_t *o =
-        json_of("simulate " WINDOW "--json --history @/fast.csv --every " EVERY "--contacts @/contacts.csv");
+        as_json("simulate " WINDOW "--json --history @/fast.csv --every " EVERY "--contacts @/contacts.csv");
     OWNED(table_free) Table h = table_of("fast.csv"), contacts = table_of("contacts.csv");
     double largest = 0;
     const double nu = 0.3, k = 2 * 2.1e11 * sqrt(0.1) / (3 * (1 - nu * nu)), a = 1.5 * (1 - 0.7);
@@ -93,7 +93,7 @@ TEST(histories_of_both_engines_agree_before_the_horizon)
 
 TEST(a_history_reaches_the_peaks_and_its_energies_add_up)
 {
-    json_auto_t *o = json_of("simulate " WINDOW "--json");
+    json_auto_t *o = as_json("simulate " WINDOW "--json");
     OWNED(table_free) Table h = table_of("fast.csv");
     double u = 0, drift = 0, accel = 0, input = 0, error = 0;
     for (size_t r = 0; r < h.n_rows; r++) {
@@ -410,7 +410,7 @@ static void write_one_floor(void)
 static long impacts_with(double gap, const char *law, const char *engine)
 {
     write_in_place("one/gap.csv", brief("gap_01_m,t_base_m,t_top_m\n%.17g,0.02,0.02\n", gap));
-    json_auto_t *o = json_of("simulate @/one/one.ini --design @/one/gap.csv --json --contacts @/one/contacts.csv --set "
+    json_auto_t *o = as_json("simulate @/one/one.ini --design @/one/gap.csv --json --contacts @/one/contacts.csv --set "
                              "sim.duration_s=3.5 --set sim.engine=%s --set contact.law=%s",
                              engine, law);
     const long n = (long)number(o, "impacts");

@@ -77,10 +77,10 @@ static double value_at(const json_t *o, size_t i, const char *scene, const char 
 
 TEST(every_record_is_simulated_at_every_intensity)
 {
-    json_auto_t *all = json_of(RANGE "--json");
+    json_auto_t *all = as_json(RANGE "--json");
     assert_int_equal(json_array_size(json_object_get(all, "records")), 6);
     for (size_t i = 0; i < 6; i++) {
-        json_auto_t *one = json_of("evaluate @/run --design knee --record builtin:%s --pga 0.%zu --json",
+        json_auto_t *one = as_json("evaluate @/run --design knee --record builtin:%s --pga 0.%zu --json",
                                    i < 3 ? "elcentro-like" : "sylmar-like", i % 3 + 1);
         assert_close(number(record_at(all, i), "pga_g"), 0.1 * (double)(i % 3 + 1), 1e-12);
         static const char *const KEYS[] = {"with_core", "rigid", "no_core"};
@@ -91,7 +91,7 @@ TEST(every_record_is_simulated_at_every_intensity)
 
 TEST(scenes_without_impacts_grow_in_proportion)
 {
-    json_auto_t *o = json_of(RANGE "--json");
+    json_auto_t *o = as_json(RANGE "--json");
     for (size_t i = 1; i < 3; i++) {
         assert_close(value_at(o, i, "no_core", "j1_m"), (double)(i + 1) * value_at(o, 0, "no_core", "j1_m"), 1e-9);
         assert_close(value_at(o, i, "rigid", "j2_m"), (double)(i + 1) * value_at(o, 0, "rigid", "j2_m"), 1e-6);
@@ -145,7 +145,7 @@ TEST(names_of_records_are_whole_and_rows_go_to_csv)
 TEST(the_csv_has_mean_and_deviation_of_the_replicates_as_the_json_has)
 {
 #define REPLICATED "evaluate @/run --design knee --set sim.gap_tolerance_m=0.01 "
-    json_auto_t *o = json_of(REPLICATED "--replicates 3 --json");
+    json_auto_t *o = as_json(REPLICATED "--replicates 3 --json");
     const json_t *r = json_object_get(record_at(o, 0), "replicates");
     free(output_of(REPLICATED "--set sim.replicates=3 --csv @/replicates.csv"));
     FREED char *text = read_in_place("replicates.csv");

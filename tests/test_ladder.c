@@ -167,7 +167,7 @@ TEST(what_the_settings_have_stays_as_they_have_it)
 
 TEST(a_neighbour_has_no_ground_and_no_beam)
 {
-    json_t *o = json_of("check configs/neighbours.ini --json --ladder"), *row;
+    json_t *o = as_json("check configs/neighbours.ini --json --ladder"), *row;
     size_t i;
     json_array_foreach(json_object_get(json_object_get(o, "ladder"), "effects"), i, row)
     {
@@ -206,7 +206,7 @@ TEST(a_scatter_as_built_above_the_tolerance_takes_its_place)
 TEST(the_command_prints_the_ladder_and_refuses_it_where_there_is_no_tower)
 {
     json_auto_t *o =
-        json_of("check configs/quick.ini --json --ladder --set building.model=@/soft --set sim.duration_s=12");
+        as_json("check configs/quick.ini --json --ladder --set building.model=@/soft --set sim.duration_s=12");
     const json_t *ladder = json_object_get(o, "ladder");
     assert_true(json_array_size(json_object_get(ladder, "effects")) >= 6);
     const char *theory = json_string_value(json_object_get(json_object_get(ladder, "settings"), "core.theory"));

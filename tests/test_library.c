@@ -102,7 +102,7 @@ TEST(every_case_has_the_numbers_of_imtet_evaluate)
 {
     OWNED(imtet_scene_free) imtet_scene *scene = six_floors();
     json_auto_t *all =
-        json_of("evaluate configs/quick.ini --design @/d.csv:1 --set sim.forces=yes " SIX_FLOORS "--json");
+        as_json("evaluate configs/quick.ini --design @/d.csv:1 --set sim.forces=yes " SIX_FLOORS "--json");
     json_t *one;
     const char *kind;
     size_t n = 0;

@@ -54,7 +54,7 @@ TEST(help_of_a_command_is_the_same_both_ways)
 
 TEST(the_version_says_what_the_program_was_built_from)
 {
-    json_auto_t *o = json_of("--version --json");
+    json_auto_t *o = as_json("--version --json");
     assert_text(output_of("--version"), brief("imtet %s (%s)\n", json_string_value(json_object_get(o, "version")),
                                               json_string_value(json_object_get(o, "revision"))));
     assert_non_null(json_string_value(json_object_get(json_object_get(o, "libraries"), "sundials")));

@@ -25,7 +25,7 @@ static size_t named_of(const Run *run, size_t rows[])
 static void simulate(long id, const char *accuracy, double j[3])
 {
     json_auto_t *o =
-        json_of("simulate @/run/settings.ini --json --set sim.accuracy=%s --design @/run:%ld", accuracy, id);
+        as_json("simulate @/run/settings.ini --json --set sim.accuracy=%s --design @/run:%ld", accuracy, id);
     j[0] = number(o, "j1_m");
     j[1] = number(o, "j2_m");
     j[2] = number(o, "j3_g");
@@ -61,7 +61,7 @@ TEST(a_design_of_a_run_is_simulated_by_the_steps_that_the_run_knows_it_by)
     const double wanted = run_f(&run, run_find(&run, e->id))[2];
     assert_true(e->level > 0);
     for (int coarse = 0; coarse < 2; coarse++) {
-        json_auto_t *o = json_of("simulate @/run/settings.ini --json --design @/run:%ld %s", e->id,
+        json_auto_t *o = as_json("simulate @/run/settings.ini --json --design @/run:%ld %s", e->id,
                                  coarse ? "--set sim.accuracy=coarse" : "");
         assert_int_equal(number(o, "j3_g") == wanted, !coarse);
     }
@@ -92,7 +92,7 @@ TEST(choose_marks_what_cannot_be_predicted)
 {
     OWNED(run_free) Run run = run_in("run");
     size_t n_marked = 0, n_reasons = 0, i;
-    json_t *o = json_of("choose @/run --json"), *pick;
+    json_t *o = as_json("choose @/run --json"), *pick;
     FREED char *said = output_of("choose @/run");
     json_array_foreach(json_object_get(o, "designs"), i, pick)
     {
@@ -120,7 +120,7 @@ TEST(simulate_says_no_less_of_what_cannot_be_predicted_than_the_run_knows)
         if (!run_is_unpredictable(&run, row))
             continue;
         n_unpredictable++;
-        json_auto_t *o = json_of("simulate @/run/settings.ini --json --design @/run:%ld", run.finer.row[i].id);
+        json_auto_t *o = as_json("simulate @/run/settings.ini --json --design @/run:%ld", run.finer.row[i].id);
         const json_t *sd = json_object_get(json_object_get(o, "error"), "sd_gaps_1_um");
         for (size_t k = 0; k < run.schema.n_obj; k++)
             assert_at_most(run.table.row[row].err[k], number(sd, schema_objective(&run.schema, k)->name));

@@ -54,7 +54,7 @@ TEST(every_result_of_a_study_is_that_of_a_simulation_of_the_same_design)
     OWNED(run_free) Run run = run_in("other");
     assert_int_equal(run.schema.n_obj, 3);
     const size_t row = run.front[0];
-    json_auto_t *o = json_of("simulate @/tower.ini --design @/other:%ld --json", run.table.row[row].id);
+    json_auto_t *o = as_json("simulate @/tower.ini --design @/other:%ld --json", run.table.row[row].id);
     assert_same_number(number(o, "core_stress_pa"), run_f(&run, row)[0]);
     assert_same_number(number(o, "impacts"), run_f(&run, row)[1]);
     assert_same_number(number(o, "j1_m"), run_f(&run, row)[2]);
@@ -79,12 +79,12 @@ TEST(every_file_and_command_follows_the_objectives_by_name)
     double least = HUGE_VAL;
     for (size_t i = 0; i < front.n_rows; i++)
         least = fmin(least, front.values[i * front.n_cols + 1 + N_VAR]);
-    json_auto_t *o = json_of("choose @/other --json --min core_stress_pa=1 --weights core_stress_pa=1,impacts=1e-9");
+    json_auto_t *o = as_json("choose @/other --json --min core_stress_pa=1 --weights core_stress_pa=1,impacts=1e-9");
     const json_t *designs = json_object_get(o, "designs"),
                  *last = json_array_get(designs, json_array_size(designs) - 1);
     assert_string_equal(json_string_value(json_object_get(last, "name")), "weighted");
     assert_same_number(number(json_object_get(last, "objectives"), "core_stress_pa"), least);
-    json_auto_t *exported = json_of("export @/other --json");
+    json_auto_t *exported = as_json("export @/other --json");
     const json_t *columns = json_object_get(exported, "columns"), *column;
     size_t i, objectives = 0;
     json_array_foreach(columns, i, column) objectives +=
@@ -144,7 +144,7 @@ TEST(limited_results_stand_beside_the_objectives)
     expect_limited_in("limited/front.csv");
     free(output_of("export @/limited --csv @/exported.csv"));
     expect_limited_in("exported.csv");
-    json_auto_t *o = json_of("choose @/limited --json");
+    json_auto_t *o = as_json("choose @/limited --json");
     const json_t *knee = json_array_get(json_object_get(o, "designs"), 0);
     OWNED(run_free) Run run = run_in("limited");
     assert_same_number(number(json_object_get(knee, "limited"), "contact_force_max_n"),
@@ -186,7 +186,7 @@ TEST(the_status_of_a_study_names_gaps_that_never_close)
 {
     write_in_place("tower.ini", TOWER);
     free(output_of("optimize @/tower.ini --out @/calm --set motion.pga_g=0.0005"));
-    json_auto_t *o = json_of("status @/calm --json");
+    json_auto_t *o = as_json("status @/calm --json");
     const json_t *review = json_object_get(o, "front_review");
     assert_int_equal(json_integer_value(json_object_get(review, "beyond_contact_law")), 0);
     assert_int_equal(json_array_size(json_object_get(review, "gaps_on_smallest")), FLOORS);

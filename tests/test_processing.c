@@ -282,9 +282,9 @@ TEST(settings_of_a_motion_that_make_no_sense_together_are_refused)
 
 TEST(the_figures_beside_processed_ones_are_those_of_the_record_at_the_same_scale)
 {
-    json_auto_t *a = json_of("spectrum builtin:sylmar-like --json --set motion.baseline=linear --pga 0.3");
+    json_auto_t *a = as_json("spectrum builtin:sylmar-like --json --set motion.baseline=linear --pga 0.3");
     const json_t *r = json_object_get(a, "recorded");
-    json_auto_t *b = json_of("spectrum builtin:sylmar-like --json --set motion.factor=%.17g", number(a, "scale"));
+    json_auto_t *b = as_json("spectrum builtin:sylmar-like --json --set motion.factor=%.17g", number(a, "scale"));
     assert_true(json_is_true(json_object_get(a, "corrected")));
     assert_true(json_is_false(json_object_get(b, "corrected")));
     assert_close(number(r, "pgd_m"), number(b, "pgd_m"), 1e-12);

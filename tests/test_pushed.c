@@ -219,7 +219,7 @@ TEST(the_example_of_a_blast_runs_from_its_folder_and_ends_in_free_vibration)
 {
     write_in_place("d.csv", "gap_zone_1_m,gap_zone_2_m,gap_zone_3_m,gap_zone_4_m,gap_zone_5_m,t_base_m,t_top_m\n"
                             "0.012,0.03,0.05,0.07,0.09,0.03,0.02\n");
-    json_auto_t *o = json_of("simulate configs/blast.ini --design @/d.csv --json");
+    json_auto_t *o = as_json("simulate configs/blast.ini --design @/d.csv --json");
     json_t *r = json_is_array(json_object_get(o, "results")) ? json_array_get(json_object_get(o, "results"), 0) : o;
     assert_less(5, number(r, "impacts"));
     assert_less(0, number(r, "input_energy_j"));

@@ -66,7 +66,7 @@ TEST(the_exports_and_status_tell_of_repeats)
     assert_string_equal(front, exported);
     assert_non_null(strstr(front, ",f1,f2,f1_sd,f2_sd,replicates\n"));
     FREED char *all = all_of("whole");
-    json_auto_t *said = json_of("status @/whole --json");
+    json_auto_t *said = as_json("status @/whole --json");
     size_t n = 0;
     for (const char *at = all; (at = strstr(at, ",repeat,")); at++)
         n++;

@@ -484,7 +484,7 @@ TEST(a_dossier_has_the_design_by_fine_and_by_cvode_limits_and_what_is_not_covere
     }
     assert_words(page, "!nan (nan", "!tuned mass 0 t"); /* there is none */
     expect(2, "name the file .html or .pdf", "report @/tower --dossier @/dossier.txt");
-    json_auto_t *fine = json_of("simulate @/tower/settings.ini --design @/tower:knee --set sim.accuracy=fine --json");
+    json_auto_t *fine = as_json("simulate @/tower/settings.ini --design @/tower:knee --set sim.accuracy=fine --json");
     const double wanted = number(fine, "j1_m");
     assert_close(first_cell(page, CALCULATIONS, "accuracy fine"), wanted, 5e-3); /* three digits */
     assert_close(first_cell(page, CALCULATIONS, "by CVODE (SUNDIALS)"), wanted, 5e-3);
@@ -505,7 +505,7 @@ TEST(a_dossier_of_several_records_has_what_the_study_judges_and_the_largest_dema
     expect(0, "", "report @/several --dossier @/several.html");
     FREED char *page = read_in_place("several.html");
     for (size_t i = 0; i < N_OF(RECORDS); i++) {
-        json_auto_t *alone = json_of("simulate @/several/settings.ini --design @/several:knee --set "
+        json_auto_t *alone = as_json("simulate @/several/settings.ini --design @/several:knee --set "
                                      "motion.records=none --record builtin:%s-like --json",
                                      RECORDS[i]);
         j1 = fmax(j1, number(alone, "j1_m"));
@@ -518,7 +518,7 @@ TEST(a_dossier_of_several_records_has_what_the_study_judges_and_the_largest_dema
                  "Values as the study judges them: worst of 3 records.",
                  "Forces and strokes under builtin:kobe-like, the first of 3 records.");
     assert_int_equal(sscanf(strstr(page, "<code>imtet "), "<code>imtet %799[^<]", command), 1);
-    json_auto_t *again = json_of("%s", command);
+    json_auto_t *again = as_json("%s", command);
     assert_close(cell(page, "The response by", "accuracy fine", 6), number(again, "ed5_10_pct"), 5e-3);
     assert_int_equal(cell(page, "The response by", "accuracy fine", 8), number(again, "impacts"));
     expect_output("of replacement; under builtin:kobe-like\n",

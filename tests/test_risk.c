@@ -86,7 +86,7 @@ TEST(a_study_minimises_and_limits_probabilities)
         const double p = 4 * run_f(&run, i)[0], q = 4 * run.table.row[i].extra[s->limited[0]];
         assert_true(p == floor(p) && p >= 0 && p <= 4 && q == floor(q) && q >= 0 && q <= 4);
     }
-    json_auto_t *o = json_of("simulate @/tower.ini --design @/chance:knee --json");
+    json_auto_t *o = as_json("simulate @/tower.ini --design @/chance:knee --json");
     json_t *replicates = json_object_get(o, "replicates");
     assert_string_equal(json_string_value(json_object_get(replicates, "rule")), "cvar");
     assert_less(0, number(json_object_get(replicates, "standard_error"), "j3_g"));
@@ -370,7 +370,7 @@ TEST(curves_are_of_the_simulations_beside_them_and_links_are_the_same_everywhere
 {
     write_in_place("three_list.txt", "builtin:elcentro-like\nbuiltin:sylmar-like\nbuiltin:suite-03\n");
     write_in_place("hazard.csv", "sa_g,rate_per_year\n0.01,0.1\n0.1,0.01\n1,0.0001\n");
-    json_auto_t *o = json_of(CURVES "--hazard @/hazard.csv --json");
+    json_auto_t *o = as_json(CURVES "--hazard @/hazard.csv --json");
     json_t *run;
     static const char *const KEYS[] = {"with_core", "no_core", "rigid", "links"};
     size_t i, n[4] = {0};
@@ -426,7 +426,7 @@ static void expect_alone(const char *words, const char *range, const char *limit
 TEST(intensities_that_are_too_far_apart_are_told_by_bounds_and_without_a_rate)
 {
     write_in_place("two_list.txt", "builtin:elcentro-like\nbuiltin:sylmar-like\n");
-    json_auto_t *o = json_of(ON_TWO "--sa 0.1 --json");
+    json_auto_t *o = as_json(ON_TWO "--sa 0.1 --json");
     const json_t *records = json_object_get(o, "records");
     double sum = 0; /* one of two exceeds the half of it at 0.1 g */
     for (size_t i = 0; i < 2; i++)
@@ -443,7 +443,7 @@ TEST(intensities_that_are_too_far_apart_are_told_by_bounds_and_without_a_rate)
 
 TEST(one_spectral_acceleration_is_a_scaling_at_the_first_period_of_the_building)
 {
-    json_auto_t *o = json_of(SUITE_LIST "--sa 0.2 --json"), *b = json_of("building @/tower.ini --json");
+    json_auto_t *o = as_json(SUITE_LIST "--sa 0.2 --json"), *b = as_json("building @/tower.ini --json");
     const json_t *hz = json_object_get(b, "building_hz");
     const double T = 1 / json_number_value(json_array_get(hz, 0));
     OWNED(motion_free) Motion m;
@@ -473,7 +473,7 @@ TEST(a_file_of_a_folder_that_cannot_be_read_is_listed_beside_the_levels_of_the_o
         append(motion, "%.2f,%.6f\n", 0.02 * i, sin(0.3 * i));
     write_in_place("some/a.txt", "no numbers here\n1 2 x\n");
     write_in_place("some/b.csv", motion);
-    json_auto_t *o = json_of(FOLDER "--json");
+    json_auto_t *o = as_json(FOLDER "--json");
     assert_int_equal(json_array_size(json_object_get(o, "unreadable")), 1);
     assert_int_equal(json_array_size(json_object_get(o, "records")), 2);
     free(output_of(FOLDER "--csv -"));
@@ -497,17 +497,17 @@ TEST(the_annual_loss_of_a_study_is_the_sum_over_its_records_of_rate_and_loss)
     free(output_of("optimize " YEARS "--set search.fidelity=records --set 'search.limits=annual_loss<=0.01' "
                    "--out @/years"));
     for (int i = 0; i < 3; i++) {
-        json_auto_t *o = json_of("simulate @/tower.ini --design @/years:knee --json --set motion.records=none --set "
+        json_auto_t *o = as_json("simulate @/tower.ini --design @/years:knee --json --set motion.records=none --set "
                                  "motion.pga_g=0 --set 'motion.record=%s'",
                                  SOURCE[i]);
         assert_true(json_is_null(json_object_get(o, "annual_loss")));
         sum += RATE[i] * number(o, "loss");
     }
-    json_auto_t *o = json_of("simulate " YEARS "--design @/years:knee --json");
+    json_auto_t *o = as_json("simulate " YEARS "--design @/years:knee --json");
     const json_t *mean = json_object_get(o, "replicates");
     assert_close(number(json_object_get(mean, "mean"), "annual_loss"), sum, 1e-12);
     assert_less(0, number(json_object_get(mean, "standard_error"), "annual_loss"));
-    json_auto_t *parts = json_of("evaluate @/years --design knee --json"); /* every record by its part of the sum */
+    json_auto_t *parts = as_json("evaluate @/years --design knee --json"); /* every record by its part of the sum */
     for (size_t i = 0; i < 3; i++)
         sum -=
             number(json_object_get(json_array_get(json_object_get(parts, "records"), i), "with_core"), "annual_loss");
@@ -617,7 +617,7 @@ TEST(demands_for_pelicun_have_a_row_per_record_and_read_back_as_they_were_printe
     static const char HEAD[] = ",1-PFA-0-1,1-PFA-1-1,1-PFA-2-1,1-PFA-3-1,1-PFA-4-1,1-PFA-5-1,1-PFA-6-1,1-PID-1-1,"
                                "1-PID-2-1,1-PID-3-1,1-PID-4-1,1-PID-5-1,1-PID-6-1\n"
                                "Units,g,g,g,g,g,g,g,unitless,unitless,unitless,unitless,unitless,unitless\n0,";
-    json_auto_t *o = json_of(SUITE_LIST "--pga 0.3 --pelicun @/pelicun.csv --json");
+    json_auto_t *o = as_json(SUITE_LIST "--pga 0.3 --pelicun @/pelicun.csv --json");
     char *text = read_in_place("pelicun.csv"), *row = text + strlen(HEAD) - 2;
     assert_true(strncmp(text, HEAD, strlen(HEAD)) == 0);
     for (int i = 0; i < 3; i++) {

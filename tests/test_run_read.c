@@ -251,7 +251,7 @@ TEST(several_runs_are_one_front_on_which_a_design_stands_once)
     OWNED(table_free) Table t = table_of("both.csv");
     assert_int_equal(t.n_rows, n);
     assert_same_number(t.values[(n - 1) * t.n_cols], (double)both.table.row[last].id);
-    json_auto_t *o = json_of("choose @/first @/second/run.sqlite --json");
+    json_auto_t *o = as_json("choose @/first @/second/run.sqlite --json");
     assert_same_number(number(o, "front"), (double)n);
 }
 

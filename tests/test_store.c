@@ -195,7 +195,7 @@ static void wait_for(const char *out, size_t n)
 /* What `status` counts is in both exports, also of the generation that was cut short. */
 static void check_unfinished_is_exported(const char *out)
 {
-    json_auto_t *status = json_of("status @/%s --json", out), *o = json_of("export @/%s --json", out);
+    json_auto_t *status = as_json("status @/%s --json", out), *o = as_json("export @/%s --json", out);
     const double simulated = number(status, "simulated");
     FREED char *all = all_of(out);
     assert_same_number(count(all, "\n") - 1, simulated);
@@ -374,7 +374,7 @@ TEST(one_failure_in_ten_is_survived_and_never_on_the_front)
         assert_int_equal(saved.place[i].ok, saved.table.row[i].id % 10 != 0);
         assert_true(saved.place[i].ok || (!saved.place[i].on_front && saved.place[i].entered == NEVER));
     }
-    json_auto_t *o = json_of("status @/tenth --json"), *list = json_of("status @ --json");
+    json_auto_t *o = as_json("status @/tenth --json"), *list = as_json("status @ --json");
     assert_int_equal(number(json_object_get(json_object_get(o, "failures"), "error"), "count"), 10);
     assert_string_equal(json_string_value(json_object_get(o, "state")), "finished");
     assert_int_equal(number(o, "failed"), 10);

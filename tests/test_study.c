@@ -80,7 +80,7 @@ TEST(a_design_of_the_front_is_evaluated_on_other_motions)
 {
     FREED char *front = read_in_place("threads-1/front.csv");
     json_auto_t *o =
-        json_of("evaluate @/threads-1 --design %ld --record builtin:kobe-like --record builtin:elcentro-like --json",
+        as_json("evaluate @/threads-1 --design %ld --record builtin:kobe-like --record builtin:elcentro-like --json",
                 strtol(strchr(front, '\n') + 1, NULL, 10));
     const json_t *records = json_object_get(o, "records");
     assert_int_equal(json_array_size(records), 2);
@@ -125,7 +125,7 @@ static size_t n_files(const char *folder)
 TEST(a_design_is_evaluated_on_every_motion_of_a_folder)
 {
     json_auto_t *o =
-        json_of("evaluate @/threads-1 --design knee --record tests/motion --set motion.channel=1 --pga 0.3 --json");
+        as_json("evaluate @/threads-1 --design knee --record tests/motion --set motion.channel=1 --pga 0.3 --json");
     const json_t *records = json_object_get(o, "records"), *unreadable = json_object_get(o, "unreadable");
     assert_int_equal(json_array_size(records) + json_array_size(unreadable), n_files("tests/motion"));
     for (size_t i = 0; i + 1 < json_array_size(records); i++)

@@ -147,7 +147,7 @@ TEST(a_study_under_a_suite_is_simulated_under_all_of_it_and_notices_a_changed_li
                    "--set motion.record=builtin:elcentro-like --set sim.duration_s=4 --set motion.pga_g=0 --set "
                    "motion.records=@/study_list.txt --set sim.accuracy=coarse --set search.max_evals=4 --set "
                    "search.initial=4 --set search.population=4 --set search.polish=0 --out @/run"));
-    json_auto_t *o = json_of("evaluate @/run --design knee --json");
+    json_auto_t *o = as_json("evaluate @/run --design knee --json");
     assert_int_equal(json_array_size(json_object_get(o, "records")), 3);
     write_in_place("study_list.txt", "builtin:sylmar-like\nbuiltin:suite-03 factor=1.6\n");
     expect(65, "does not hold what it held for the run", "evaluate @/run --design knee --json");

@@ -13,7 +13,7 @@ static char verdict[6000], sentence[5][1200]; /* as the program stored it, and i
 /* The design `word` (none: the building alone), under record r. */
 static json_t *simulated(size_t r, const char *word, const char *more)
 {
-    return json_of("simulate @/run/settings.ini --record %s --set motion.records=none --json --design %s %s",
+    return as_json("simulate @/run/settings.ini --record %s --set motion.records=none --json --design %s %s",
                    RECORDS[r], word, more);
 }
 
@@ -80,7 +80,7 @@ TEST(factors_are_medians_over_the_records_of_simulations_one_by_one)
 {
     static const char *const OTHERS[] = {"no core", "rigidly connected", "viscous links"};
 #define BOTH "evaluate @/run --design knee --record builtin:kobe-like --record builtin:elcentro-like"
-    json_auto_t *links = json_of(BOTH " --json");
+    json_auto_t *links = as_json(BOTH " --json");
     FREED char *said = output_of(BOTH); /* its links are those of each record, the stored verdict has one constant */
     for (size_t o = 0; o < N_OF(OTHERS); o++)
         for (size_t k = 0; k < N_OF(KEYS); k++) {

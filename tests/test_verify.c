@@ -28,9 +28,9 @@ TEST(both_models_are_what_simulate_gives)
 {
     write_design("d.csv");
     json_auto_t *v =
-        json_of("evaluate --full-model configs/quick.ini --design @/d.csv:1 --set sim.duration_s=40 --json");
-    json_auto_t *all = json_of("simulate configs/quick.ini --design @/d.csv --set sim.duration_s=40 --json");
-    json_auto_t *full = json_of(
+        as_json("evaluate --full-model configs/quick.ini --design @/d.csv:1 --set sim.duration_s=40 --json");
+    json_auto_t *all = as_json("simulate configs/quick.ini --design @/d.csv --set sim.duration_s=40 --json");
+    json_auto_t *full = as_json(
         "simulate configs/quick.ini --design @/d.csv:1 --set sim.duration_s=40 --set building.modes=100000 --json");
     json_t *reduced = json_object_get(v, "reduced"), *error = json_object_get(v, "error");
     expect_same(reduced, json_array_get(all, 0));
@@ -45,7 +45,7 @@ TEST(both_models_are_what_simulate_gives)
 TEST(designs_and_records_make_a_list_in_their_order)
 {
     write_design("d.csv");
-    json_auto_t *v = json_of("evaluate --full-model configs/quick.ini --design @/d.csv --set sim.duration_s=5 --record "
+    json_auto_t *v = as_json("evaluate --full-model configs/quick.ini --design @/d.csv --set sim.duration_s=5 --record "
                              "builtin:kobe-like --record builtin:elcentro-like --json");
     assert_int_equal((int)json_array_size(v), 4);
     for (size_t i = 0; i < 4; i++) {
@@ -58,7 +58,7 @@ TEST(designs_and_records_make_a_list_in_their_order)
 
 TEST(fixed_interface_modes_are_verified_as_the_reduced_model)
 {
-    json_auto_t *v = json_of(
+    json_auto_t *v = as_json(
         "evaluate --full-model configs/quick.ini --design none --set sim.duration_s=20 --set building.modes=30 --json");
     const json_t *error = json_object_get(v, "error");
     assert_int_equal((int)number(json_object_get(v, "degrees_of_freedom"), "reduced"), 51);

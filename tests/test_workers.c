@@ -23,7 +23,7 @@ TEST(no_design_is_left_out_whatever_its_message)
     for (size_t i = 0; i < 2; i++) {
         write_external("words.ini", brief("sh tests/worker.sh %s", MODES[i]), "max_evals = 24\n");
         free(output_of("optimize @/words.ini --out @/words"));
-        json_auto_t *all = json_of("export @/words --json"), *status = json_of("status @/words --json");
+        json_auto_t *all = as_json("export @/words --json"), *status = as_json("status @/words --json");
         assert_int_equal(json_array_size(json_object_get(all, "evaluations")), 24);
         assert_int_equal(count_failures(status), 8);
         FREED char *csv = all_of("words");
@@ -37,8 +37,8 @@ TEST(names_that_are_no_utf_8_are_shown)
 {
     write_in_place("textbook.ini", TEXTBOOK);
     free(output_of("optimize @/textbook.ini --out @/runs/stra\337e"));
-    json_auto_t *status = json_of("status @/runs/stra\337e --json"), *list = json_of("status @/runs --json"),
-                *all = json_of("export @/runs/stra\337e --json");
+    json_auto_t *status = as_json("status @/runs/stra\337e --json"), *list = as_json("status @/runs --json"),
+                *all = as_json("export @/runs/stra\337e --json");
     assert_non_null(strstr(json_string_value(json_object_get(status, "run")), "stra\\xDFe"));
     assert_int_equal(json_array_size(list), 1);
     assert_non_null(json_object_get(json_object_get(all, "settings"), "run.out"));
