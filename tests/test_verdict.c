@@ -29,8 +29,8 @@ static void make_run(void)
     const long id = run.table.row[run_knee(&run)].id;
     assert_true(text && atol(json_object_iter_key(json_object_iter(all))) == id);
     snprintf(verdict, sizeof verdict, "%s", json_string_value(text));
-    char rest[800] = "", *run_at = strstr(verdict, " RUN ");
-    strncat(rest, run_at + 4, sizeof rest - 1);
+    char rest[800], *run_at = strstr(verdict, " RUN ");
+    snprintf(rest, sizeof rest, "%s", run_at + 4);
     sprintf(run_at + 1, "%s/run%s", place.folder, rest);
     for (char *at = verdict, *end; (end = strchr(at, '\n')); at = end + 1) {
         static size_t n = 0;
