@@ -93,7 +93,7 @@ void standing_of(Standing *out, const char *folder, const Run *run)
     const RunSession *last = run->n_sessions > 0 ? &run->session[run->n_sessions - 1] : NULL;
     out->state = folder_is_held(folder, &out->holder) ? RUN_RUNNING
                  : last && last->is_final             ? RUN_FINISHED
-                 : last && *last->ended             ? RUN_PAUSED
+                 : last && *last->ended               ? RUN_PAUSED
                                                       : RUN_INTERRUPTED;
     for (size_t i = 0; i < run->table.n; i++) {
         const int polished = run->table.row[i].kind == KIND_POLISHED;
