@@ -303,7 +303,7 @@ static const Command COMMANDS[] = {
     COMMAND("schedule", "RUN", run_schedule, "a run of one thread replayed on 1 to 64 workers",
             "imtet-bench schedule results/kobe",
             "Efficiency, critical path and waiting, from the times of its designs and of its search. As CSV.",
-            {"--from", "N", NULL, 0, "after the step that has the first N designs"},
+            {"--from", "N", NULL, 0, "of what is done once the first N designs are there"},
             {"--apart", "N", NULL, 0, "processors that choose designs beside the workers; those choose unless given"}),
     COMMAND("problem", "NAME", problem_run, "the search on a problem from a textbook: dtlz2, wfg4",
             "imtet-bench problem dtlz2 --max-evals 500 --seed 1 --csv dtlz2.csv",

@@ -97,14 +97,6 @@ static Replayed replay(Replay *r, size_t n_workers, double began)
     return out;
 }
 
-static void write_row(Replay *r, size_t n_workers, double critical, FILE *out)
-{
-    const Replayed p = replay(r, n_workers, replay(r, n_workers, 0.0).reached);
-    const double all = (double)n_workers * p.time;
-    fprintf(out, "%zu,%.4g,%.3f,%.4g,%.3f,%.3f\n", n_workers, p.time, p.work / all, critical, p.choosing / p.time,
-            p.idle / all);
-}
-
 Status schedule(const SchedulePlan *plan, FILE *out, Err *err)
 {
     static const size_t WORKERS[] = {1, 2, 4, 8, 14, 16, 32, 64};
@@ -131,8 +123,12 @@ Status schedule(const SchedulePlan *plan, FILE *out, Err *err)
         find_choosing(&r);
         const double critical = replay(&r, WORKERS_MAX, replay(&r, WORKERS_MAX, 0.0).reached).time;
         fputs("workers,search_s,efficiency,critical_s,choosing,idle\n", out);
-        for (size_t i = 0; i < N_OF(WORKERS); i++)
-            write_row(&r, WORKERS[i], critical, out);
+        for (size_t i = 0; i < N_OF(WORKERS); i++) {
+            const Replayed p = replay(&r, WORKERS[i], replay(&r, WORKERS[i], 0.0).reached);
+            const double all = (double)WORKERS[i] * p.time;
+            fprintf(out, "%zu,%.4g,%.3f,%.4g,%.3f,%.3f\n", WORKERS[i], p.time, p.work / all, critical,
+                    p.choosing / p.time, p.idle / all);
+        }
     }
     free(r.end);
     free(r.choose);
