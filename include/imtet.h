@@ -26,8 +26,8 @@
  * Look-ahead the id of a design alone decides which answers it is chosen from: all but the last ones before it
  *            (search.ahead), which may be under way. So several designs can be asked for at once: five or more for
  *            each objective, three with noise, three in all with int or choice, fewer of a small budget; fewer than n,
- *            or none, are given where the search must know more answers first. A design that is never told holds the search up:
- *            tell that it failed. Ids are 1, 2, ... in the order of asking
+ *            or none, are given where the search must know more answers first. A design that is never told holds the
+ *            search up: tell that it failed. Ids are 1, 2, ... in the order of asking
  * Repeatable the same options and answers give the same designs, to the last bit, and those of `imtet optimize` with
  *            the same settings. Portions, order of telling, saving and loading, and the number of threads change
  *            nothing. Processors of different kinds need OPENBLAS_CORETYPE=Haswell in the environment, as the program
