@@ -572,7 +572,7 @@ TEST(what_is_no_foundation_is_refused_in_words)
     } BAD[] = {{"", "nothing gives way"},
                {"radius=10", "nothing gives way"},
                {"soil=E radius=10", "no capital letter from A to D"},
-               {"soil=C,radius=10", "no capital letter from A to D; blanks part them, no commas"},
+               {"soil=C, radius=5,5", "'5' is none of soil=A..D g="},
                {"soil=C", "needs radius="},
                {"soil=C g=1e8 radius=10", "leave one out"},
                {"soil=C radius=10 nu=0.6", "'nu=0.6' is no number from 0.001 to 0.5"},

@@ -13,7 +13,7 @@ Status keyed_numbers(const char *setting, const char *text, unsigned kind, size_
 {
     char copy[OPTION_TEXT_MAX], all[160] = "", *rest = copy, *end;
     snprintf(copy, sizeof copy, "%s", text);
-    for (char *word; (word = strsep(&rest, " "));) {
+    for (char *word; (word = strsep(&rest, " ,"));) {
         /* The key of "key=value". */
         const size_t length = strcspn(word, "=");
         size_t i = 0;
@@ -40,9 +40,9 @@ Status keyed_numbers(const char *setting, const char *text, unsigned kind, size_
             end++;
         }
         if (end == value || *end || !(x[i] >= k->least && x[i] <= k->most))
-            return bad_data(err, "%s: '%.60s' is no number from %g to %g%s%.*s%s", setting, word, k->least, k->most,
-                            k->letters ? " and no capital letter from A to " : "", k->letters, (char[]){last_letter(k)},
-                            strchr(word, ',') ? "; blanks part them, no commas" : "");
+            return bad_data(err, "%s: '%.60s' is no number from %g to %g%s%.*s", setting, word, k->least, k->most,
+                            k->letters ? " and no capital letter from A to " : "", k->letters,
+                            (char[]){last_letter(k)});
     }
     return STATUS_OK;
 }

@@ -1,4 +1,4 @@
-/* base/keyed.h -- numbers by name in one text: "ag=0.3 soil=C", parted by blanks.
+/* base/keyed.h -- numbers by name in one text: "ag=0.3 soil=C", parted by blanks or commas.
  *
  * Errors   STATUS_BAD_DATA, one sentence that begins with the setting: a word that is no key, that stands twice, or a
  *          number outside its range

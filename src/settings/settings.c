@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <limits.h>
 
+#include "base/keyed.h"
 #include "base/list.h"
 #include "base/text.h"
 #include "motion/builtin.h"
@@ -451,30 +452,33 @@ static Status assign_choice(Settings *s, const Option *o, const char *value, Err
 /* "NAME=NUMBER NAME=NUMBER ..."; none and what is not named are 0. */
 static Status assign_shares(Settings *s, const Option *o, const char *value, Err *err)
 {
-    char copy[OPTION_TEXT_MAX], *rest = copy;
+    char names[SHARES_MAX][OPTION_TEXT_MAX];
+    KeyedNumber keys[SHARES_MAX];
     double shares[SHARES_MAX] = {0};
-    unsigned seen = 0;
     if (!*value)
         return bad_data(err, "%s: is empty", o->key);
-    snprintf(copy, sizeof copy, "%s", strcmp(value, "none") == 0 ? "" : value);
-    for (char *item; (item = strsep(&rest, " ,"));) {
-        char *equals = strchr(item, '=');
-        if (!*item)
-            continue;
-        if (equals)
-            *equals = 0;
-        const int i = equals ? word_index(o->words, item) : -1;
-        double number;
-        if (i < 0)
-            return bad_data(err, "%s: '%.60s' is no NAME=NUMBER with a name of %s", o->key, item, o->words);
-        if (seen >> i & 1)
-            return bad_data(err, "%s: %s stands there twice", o->key, item);
-        seen |= 1U << i;
-        TRY(parse_number(o, equals + 1, &number, err));
-        shares[i] = number;
+    for (int i = 0; i < o->count; i++) {
+        format_word(names[i], o->words, i);
+        keys[i] = (KeyedNumber){names[i], 1, o->min, o->max, 0};
     }
+    if (strcmp(value, "none") != 0)
+        TRY(keyed_numbers(o->key, value, 1, o->count, keys, shares, err));
     memcpy(field_of(s, o), shares, o->count * sizeof *shares);
     return STATUS_OK;
+}
+
+/* The quotes between which a settings file gives a value back, best none; NULL: with neither kind it does. A bracket would
+ * begin an array, which goes on over further lines. */
+static const char *quotes_of(const char *value)
+{
+    static const char *const QUOTES[] = {"", "\"", "'"};
+    for (size_t i = *value == '['; i < N_OF(QUOTES); i++) {
+        char line[OPTION_TEXT_MAX + 4], plain[OPTION_TEXT_MAX] = "";
+        snprintf(line, sizeof line, " %s%s%s", QUOTES[i], value, QUOTES[i]);
+        if (strcmp(table_value(line, plain), value) == 0)
+            return QUOTES[i];
+    }
+    return NULL;
 }
 
 /* A text that can stand in a settings file. */
@@ -484,13 +488,9 @@ static Status assign_text(Settings *s, const Option *o, const char *value, Err *
         return bad_data(err, "%s: is empty", o->key);
     if (strlen(value) >= OPTION_TEXT_MAX)
         return bad_data(err, "%s: is longer than %d characters", o->key, OPTION_TEXT_MAX - 1);
-    const int has_both = strchr(value, '"') && strchr(value, '\'');
-    if (strpbrk(value, "\r\n") || strstr(value, " ;") || (strstr(value, " #") && (has_both || strchr(value, '\\'))) ||
-        is_blank(value[0]) || is_blank(value[strlen(value) - 1]))
-        return bad_data(
-            err,
-            "%s: '%.60s' cannot be kept in a settings file (line ends, ' ;', ' #' beside quotes, blanks around it)",
-            o->key, value);
+    if (strpbrk(value, "\r\n") || !quotes_of(value))
+        return bad_data(err, "%s: '%.60s' cannot be kept in a settings file: it has line ends, or quotes of both kinds",
+                        o->key, value);
     snprintf(field_of(s, o), OPTION_TEXT_MAX, "%s", value);
     return STATUS_OK;
 }
@@ -847,7 +847,8 @@ void settings_write(const Settings *s, FILE *out, SettingsForm form, const char 
                 fprintf(out, " (%s%sFILE)", o->words ? o->words : "", o->words ? "|" : "");
             fputs(o->kind == KIND_PATH_LIST ? " (FILE,...)\n" : "\n", out);
         }
-        const char *quote = !strstr(value, " #") ? "" : strchr(value, '"') ? "'" : "\"";
+        const char *quote = quotes_of(value);
+        quote = quote ? quote : ""; /* made absolute, a path may have come to need what no quotes keep */
         fprintf(out, "%s = %s%s%s\n", o->key + n + 1, quote, value, quote);
     }
 }

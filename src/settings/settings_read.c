@@ -160,6 +160,20 @@ static char *toml_end(char *value, const char *end, int joins)
     return NULL;
 }
 
+/* A value ends where a note follows it: at the first ; or # behind a blank, or what of TOML is over. */
+const char *table_value(char *text, char plain[OPTION_TEXT_MAX])
+{
+    char *first = skip_blanks(text);
+    char *close = *first && strchr("\"'[", *first) ? toml_end(first, text + strlen(text), 0) : NULL;
+    if (close && strchr(";#", *skip_blanks(close)))
+        *close = 0;
+    for (char *c = text; (c = strpbrk(c, ";#")); c++)
+        if (c > text && (!close || c > close) && is_blank(c[-1]))
+            *c-- = 0;
+    trim_end(text);
+    return plain_value(skip_blanks(text), plain);
+}
+
 /* [section], or name = value, as INI and TOML have them. */
 static void take_line(Reading *r, char *line)
 {
@@ -180,29 +194,17 @@ static void take_line(Reading *r, char *line)
     }
     snprintf(name, sizeof name, "%.*s", (int)(value - begin), begin);
     trim_end(name);
-
-    /* A value ends where a note follows it: at the first ; or # behind a blank, or what of TOML is over. */
-    char *first = skip_blanks(++value);
-    char *close = *first && strchr("\"'[", *first) ? toml_end(first, value + strlen(value), 0) : NULL;
-    if (close && strchr(";#", *skip_blanks(close)))
-        *close = 0;
-    for (char *c = value; (c = strpbrk(c, ";#")); c++)
-        if (c > value && (!close || c > close) && is_blank(c[-1])) {
-            *c = 0;
-            break;
-        }
-    trim_end(value);
-    value = skip_blanks(value);
+    const Place at = place_of(r, skip_blanks(++value));
+    const char *meant = table_value(value, plain);
 
     /* The setting, once. */
     snprintf(key, sizeof key, "%s%s%s", r->section, r->section[0] ? "." : "", name);
     if (table_find(key, &i, &err) != STATUS_OK) {
-        if (!r->is_stored || !table_passes(key, value))
+        if (!r->is_stored || !table_passes(key, meant))
             report_fault(r, place_of(r, begin), err.text);
         return;
     }
-    const Place at = place_of(r, value);
-    if (table_assign(r->s, i, plain_value(value, plain), &err) != STATUS_OK) {
+    if (table_assign(r->s, i, meant, &err) != STATUS_OK) {
         report_fault(r, at, err.text);
         return;
     }
