@@ -75,7 +75,7 @@ export async function openBrowser({ program = "chromium", width = 1360, height =
     });
 
     // Until the expression is true; it is asked every 20 ms, within the page: asking from here costs more.
-    async function until(expression, seconds = 240) {
+    async function until(expression, seconds = 90) {
       const end = Date.now() + 1000 * seconds;
       while (!(await isTrue(expression))) {
         if (Date.now() > end) throw new Error(`never came true: ${expression}`);
@@ -94,10 +94,14 @@ export async function openBrowser({ program = "chromium", width = 1360, height =
       }
       const { x, y, width, height } = e.getBoundingClientRect(); return { x, y, width, height }; })()`);
 
-    async function click(selector, nth) {
-      const { x, y, width, height } = await boxOf(selector, nth);
-      await mouse("mousePressed", x + width / 2, y + height / 2);
-      await mouse("mouseReleased", x + width / 2, y + height / 2);
+    // A page that draws itself anew between the two halves of a click takes none: then once more. One that went away took it.
+    async function click(selector, nth = 0) {
+      for (let tries = 0, taken = false; tries < 5 && !taken; tries++) {
+        const { x, y, width, height } = await boxOf(selector, nth);
+        await evaluate(`window.taken = false; document.querySelectorAll(${JSON.stringify(selector)})[${nth}].addEventListener("click", () => { window.taken = true; }, true)`);
+        for (const type of ["mousePressed", "mouseReleased"]) await mouse(type, x + width / 2, y + height / 2);
+        taken = await evaluate("window.taken !== false").catch(() => true);
+      }
     }
 
     async function press(key) {
