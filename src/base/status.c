@@ -98,17 +98,11 @@ static int edit_distance(const char *a, const char *b)
     for (int j = 0; j <= n; j++)
         row[j] = j;
     for (int i = 0; i < MOST && a[i]; i++) {
-        int diagonal = row[0];
-        row[0] = i + 1;
+        int diagonal = row[0]++;
         for (int j = 0; j < n; j++) {
             const int replaced = diagonal + (a[i] != b[j]);
             diagonal = row[j + 1];
-            int best = replaced;
-            if (diagonal + 1 < best)
-                best = diagonal + 1;
-            if (row[j] + 1 < best)
-                best = row[j] + 1;
-            row[j + 1] = best;
+            row[j + 1] = MIN_OF(replaced, MIN_OF(diagonal, row[j]) + 1);
         }
     }
     return row[n];
@@ -126,8 +120,9 @@ const char *nearest_word(const char *word, const char *const list[], int n)
             nearest = list[i];
             least = 0;
         }
-    for (int i = 0; i < n; i++) {
-        const int d = edit_distance(word, list[i]);
+    for (int i = 0; i < n; i++) { /* lengths differ by no more than words do */
+        const int apart = abs((int)strlen(list[i]) - (int)length),
+                  d = apart < least ? edit_distance(word, list[i]) : apart;
         if (d < least) {
             least = d;
             nearest = list[i];

@@ -467,8 +467,8 @@ static Status assign_shares(Settings *s, const Option *o, const char *value, Err
     return STATUS_OK;
 }
 
-/* The quotes between which a settings file gives a value back, best none; NULL: with neither kind it does. A bracket would
- * begin an array, which goes on over further lines. */
+/* The quotes between which a settings file gives a value back, best none; NULL: with neither kind it does. A bracket
+ * would begin an array, which goes on over further lines. */
 static const char *quotes_of(const char *value)
 {
     static const char *const QUOTES[] = {"", "\"", "'"};
@@ -481,10 +481,9 @@ static const char *quotes_of(const char *value)
     return NULL;
 }
 
-/* A text that can stand in a settings file. */
 static Status assign_text(Settings *s, const Option *o, const char *value, Err *err)
 {
-    if (!value[0])
+    if (!*value)
         return bad_data(err, "%s: is empty", o->key);
     if (strlen(value) >= OPTION_TEXT_MAX)
         return bad_data(err, "%s: is longer than %d characters", o->key, OPTION_TEXT_MAX - 1);
@@ -847,8 +846,8 @@ void settings_write(const Settings *s, FILE *out, SettingsForm form, const char 
                 fprintf(out, " (%s%sFILE)", o->words ? o->words : "", o->words ? "|" : "");
             fputs(o->kind == KIND_PATH_LIST ? " (FILE,...)\n" : "\n", out);
         }
-        const char *quote = quotes_of(value);
-        quote = quote ? quote : ""; /* made absolute, a path may have come to need what no quotes keep */
+        /* A path that became an absolute one may hold what no quotes keep. */
+        const char *found = quotes_of(value), *quote = found ? found : "";
         fprintf(out, "%s = %s%s%s\n", o->key + n + 1, quote, value, quote);
     }
 }

@@ -163,8 +163,8 @@ static char *toml_end(char *value, const char *end, int joins)
 /* A value ends where a note follows it: at the first ; or # behind a blank, or what of TOML is over. */
 const char *table_value(char *text, char plain[OPTION_TEXT_MAX])
 {
-    char *first = skip_blanks(text);
-    char *close = *first && strchr("\"'[", *first) ? toml_end(first, text + strlen(text), 0) : NULL;
+    char *first = skip_blanks(text), *end = first + strlen(first);
+    char *close = *first && strchr("\"'[", *first) ? toml_end(first, end, 0) : NULL;
     if (close && strchr(";#", *skip_blanks(close)))
         *close = 0;
     for (char *c = text; (c = strpbrk(c, ";#")); c++)
@@ -182,7 +182,7 @@ static void take_line(Reading *r, char *line)
     Err err = {0};
     int i = 0;
     trim_end(begin);
-    if (!begin[0] || strchr(";#", begin[0]))
+    if (strchr(";#", *begin)) /* or it is empty */
         return;
     if (end) {
         snprintf(r->section, sizeof r->section, "%.*s", (int)(end - begin) - 1, begin + 1);

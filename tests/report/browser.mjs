@@ -1,8 +1,9 @@
 // Headless Chromium over its debugging pipe: file descriptors 3 and 4, one JSON message up to each NUL byte.
 import { spawn } from "node:child_process";
-import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
+import { mkdtempSync, readdirSync, rmSync, statSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
+export const pause = (ms) => new Promise((done) => setTimeout(done, ms));
 const KEY_CODES = { Tab: 9, Enter: 13, Escape: 27, ArrowLeft: 37, ArrowRight: 39, Delete: 46 };
 
 // Runs { "what is expected": async function }; how many failed.
@@ -20,6 +21,15 @@ export async function tryAll(trials) {
   }
   return failed;
 }
+
+// The name of a file that the browser has saved: its size has rested for so long.
+export async function saved(place, is, ms = 100) {
+  for (let k = 0, size = 0, before = 0; k < 600; k++, before = size, await pause(ms)) {
+    const name = readdirSync(place).find(is);
+    if ((size = name ? statSync(join(place, name)).size : 0) && size === before) return name;
+  }
+}
+
 export async function openBrowser({ program = "chromium", width = 1360, height = 900 } = {}) {
   const profile = mkdtempSync(join(tmpdir(), "imtet-chromium-"));
   const child = spawn(program, ["--headless=new", "--remote-debugging-pipe", "--no-sandbox", "--disable-gpu", "--no-first-run",
@@ -79,7 +89,7 @@ export async function openBrowser({ program = "chromium", width = 1360, height =
       const end = Date.now() + 1000 * seconds;
       while (!(await isTrue(expression))) {
         if (Date.now() > end) throw new Error(`never came true: ${expression}`);
-        await new Promise((resolve) => setTimeout(resolve, 20));
+        await pause(20);
       }
     }
 
@@ -141,7 +151,7 @@ export async function openBrowser({ program = "chromium", width = 1360, height =
 
 // What the selector finds, at most `height` high, or what is in the window, as JPEG or PNG by the name of the file; two dots for one of the page.
 export async function picture(page, file, selector, height = 1e5) {
-  await new Promise((done) => setTimeout(done, 1000)); // lines come in passes
+  await pause(1000); // lines come in passes
   const clip = await page.evaluate(`(() => { if (!${!!selector}) return { x: scrollX, y: scrollY, width: innerWidth, height: innerHeight, scale: 2 };
     const bar = document.getElementById("parts"), r = document.querySelector(${JSON.stringify(selector ?? "body")}).getBoundingClientRect();
     if (bar) bar.style.position = "static"; // it would lie over what is long

@@ -1,16 +1,15 @@
 // Reports as a person would open and try them, for tests/serve/drive.mjs; drive.mjs --bench REPORT.html prints times of
 // painting and brushing
 import assert from "node:assert/strict";
-import { existsSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";
+import { mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
-import { openBrowser, tryAll } from "./browser.mjs";
+import { openBrowser, pause, saved, tryAll } from "./browser.mjs";
 const downloads = mkdtempSync(join(tmpdir(), "imtet-downloads-"));
 const doctored = join(downloads, "doctored.html");
 export const browser = await openBrowser();
 const page = await browser.openPage();
-const pause = (ms) => new Promise((done) => setTimeout(done, ms));
 
 // ---- what the file says, read without the page's own script
 let file, html, run, results, lines, names, rows, all;
@@ -72,12 +71,7 @@ async function downloaded() {
   await browser.send("Browser.setDownloadBehavior", { behavior: "allow", downloadPath: downloads });
   for (const old of readdirSync(downloads)) rmSync(join(downloads, old));
   await click("#download");
-  for (let k = 0; k < 250; k++) {
-    const got = readdirSync(downloads).find((name) => name.endsWith(".csv"));
-    if (got && existsSync(join(downloads, got))) return readFileSync(join(downloads, got), "utf8");
-    await pause(20);
-  }
-  throw new Error("nothing was downloaded");
+  return readFileSync(join(downloads, await saved(downloads, (name) => name.endsWith(".csv"), 20)), "utf8");
 }
 
 const counted = async () => +(await page.evaluate("document.getElementById('count').textContent")).replace(/ of.*/, "").replaceAll(",", "");

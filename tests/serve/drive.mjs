@@ -4,18 +4,18 @@
 //   drive.mjs IMTET --pictures FOLDER OUT   of FOLDER/kobe, a finished run
 import assert from "node:assert/strict";
 import { execFileSync, spawn } from "node:child_process";
-import { cpSync, existsSync, mkdirSync, readFileSync, readdirSync, rmSync, statSync, writeFileSync } from "node:fs";
+import { cpSync, existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
 import { compare } from "../engine/forty.mjs";
-import { picture, tryAll } from "../report/browser.mjs";
+import { pause, picture, saved, tryAll } from "../report/browser.mjs";
 const [imtet, folder, given, pictures] = process.argv.slice(2);
 const isBench = folder === "--bench", isPictures = folder === "--pictures", root = resolve(isBench || isPictures ? given ?? "" : join(folder ?? "", "runs"));
 if (!(isBench || isPictures ? given : folder) || !existsSync(root)) {
   console.error(`usage: drive.mjs IMTET FOLDER [REPORT.html ...] | --bench RUN | --pictures FOLDER OUT (make serve-bench RUN=results/NAME)${given ? `; ${root} is not there` : ""}`);
   process.exit(64);
 }
-const pause = (ms) => new Promise((done) => setTimeout(done, ms)), children = [];
+const children = [];
 
 function start(...words) {
   const child = spawn(imtet, words, { stdio: ["ignore", "pipe", "ignore"] });
@@ -44,14 +44,6 @@ async function open(name) {
 }
 const { until, press, mouse, boxOf, click } = page;
 const designShown = (id) => until(`document.getElementById("drawer").dataset.id === "${id}"`);
-
-// The name of a file that the browser has saved: its size has rested for a tenth of a second.
-async function saved(place, is) {
-  for (let k = 0, size = 0, before = 0; k < 600; k++, before = size, await pause(100)) {
-    const name = readdirSync(place).find(is);
-    if ((size = name ? statSync(join(place, name)).size : 0) && size === before) return name;
-  }
-}
 
 // Drags a slider to and fro; updates that came and how long each took from the movement to the frame with its picture.
 async function dragSlider(nth, moves) {
@@ -270,7 +262,7 @@ const tried = {
     const path = join(root, "a", "notes.json"), field = "document.querySelector('#drawer textarea')";
     const write = async (text) => {
       await page.evaluate(`${field}.value = ${JSON.stringify(text)}; ${field}.dispatchEvent(new Event("change"))`);
-      for (let k = 0; k < 100 && (existsSync(path) ? Object.keys(JSON.parse(readFileSync(path, "utf8"))).length : 0) !== +(text.trim() !== ""); k++) await new Promise((done) => setTimeout(done, 50));
+      for (let k = 0; k < 100 && (existsSync(path) ? Object.keys(JSON.parse(readFileSync(path, "utf8"))).length : 0) !== +(text.trim() !== ""); k++) await pause(50);
       return JSON.parse(readFileSync(path, "utf8"));
     };
     await page.evaluate("document.querySelector('#designs tbody button').click()");
