@@ -5,8 +5,7 @@
 #include "scene/neighbour.h"
 #include "settings/settings.h"
 
-/* Values of a setting with an effect, where it is not set, and without it. NULL: set_values
- * has it. */
+/* Values of a setting with an effect, where it is not set, and without it. NULL: set_values has it. */
 static const struct {
     const char *words, *key, *with, *without;
 } EFFECTS[] = {
@@ -50,8 +49,8 @@ static void set_values(const Settings *all, int kind, double strong_s, LadderEff
     const char *without = EFFECTS[kind].without ? EFFECTS[kind].without : now;
     *e = (LadderEffect){.words = EFFECTS[kind].words, .key = EFFECTS[kind].key};
     e->is_set = kind == STEPS ? strcmp(now, with) == 0 : strcmp(now, without) != 0 || kind == END;
-    snprintf(e->with, sizeof e->with, "%s", e->is_set ? now : with);
-    snprintf(e->without, sizeof e->without, "%s", kind == STEPS && e->is_set ? "standard" : without);
+    text_copy(e->with, e->is_set ? now : with);
+    text_copy(e->without, kind == STEPS && e->is_set ? "standard" : without);
     if (kind == END)
         snprintf(e->without, sizeof e->without, "%.6g", strong_s);
     if (kind == GROUND && !e->is_set) /* a mat twice as wide as the core, held down */

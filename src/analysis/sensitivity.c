@@ -89,7 +89,7 @@ static void list_settings(Job *job, const Settings *s)
         if (!(value > 0) || (i == 1 && value * (1 + SHARE) > 1))
             continue;
         Sensitivity *o = &job->out[job->n_parameters++];
-        snprintf(o->name, sizeof o->name, "%s", KEYS[i]);
+        text_copy(o->name, KEYS[i]);
         o->value = value;
         o->step = SHARE * value;
         for (size_t side = 0; side < SIDES_OF_TWO_STEPS; side++) {

@@ -14,7 +14,7 @@ imtet_status api_status(Status status, const Err *err, imtet_error *error)
 {
     if (error) {
         error->status = (imtet_status)status;
-        snprintf(error->text, sizeof error->text, "%s", status == err->code ? err->text : "");
+        text_copy(error->text, status == err->code ? err->text : "");
     }
     return (imtet_status)status;
 }

@@ -44,7 +44,7 @@ static NamedValue *add(imtet_result *r, const char *name)
     }
     NamedValue *v = &r->value[r->n++];
     *v = (NamedValue){0};
-    snprintf(v->name, sizeof v->name, "%s", name);
+    text_copy(v->name, name);
     return v;
 }
 

@@ -30,7 +30,7 @@ static void walk_row(Pack *p, imtet_search *s, size_t i, Err *err)
     Evaluation *e = &s->table.row[i];
     size_t told = s->design[i].place == DESIGN_TOLD, outcome = e->outcome, kind = e->kind, generation = e->generation;
     char reason[REASON_MAX];
-    snprintf(reason, sizeof reason, "%s", e->reason ? e->reason : "");
+    text_copy(reason, e->reason ? e->reason : "");
     pack_numbers(p, e->x, s->table.n_var, -INFINITY, INFINITY);
     pack(p, e->f, s->table.n_obj * sizeof *e->f); /* not numbers where it failed */
     pack(p, e->extra, s->table.n_extra * sizeof *e->extra);

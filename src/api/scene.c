@@ -169,10 +169,9 @@ static Status add_names(const Question *q, const char *what, int list, size_t n,
         if (list == VARIABLES)
             design_variable_name(tower_design(q->tower), (int)k, name);
         else
-            snprintf(name, sizeof name, "%s",
-                     list == OBJECTIVES                 ? measures_name(order, order->of[k])
-                     : measure(order->of[k])->sense > 0 ? "min"
-                                                        : "max");
+            text_copy(name, list == OBJECTIVES                 ? measures_name(order, order->of[k])
+                            : measure(order->of[k])->sense > 0 ? "min"
+                                                               : "max");
         text_join(names, size, ",", "%s", name);
     }
     result_text(q->result, what, names);

@@ -285,7 +285,7 @@ Status table_parse(Table *t, const char *path, const char *text, size_t length, 
 {
     Reading r = {.t = t, .has_header = form != TABLE_PLAIN, .of_words = form == TABLE_WORDS};
     memset(t, 0, sizeof *t);
-    snprintf(t->path, sizeof t->path, "%s", path);
+    text_copy(t->path, path);
     Status status = lines_open(&r.l, t->path, text, length, err);
     THEN(status, read_rows(&r, length, err));
     if (status != STATUS_OK)

@@ -12,7 +12,7 @@ Status keyed_numbers(const char *setting, const char *text, unsigned kind, size_
                      double x[], Err *err)
 {
     char copy[OPTION_TEXT_MAX], all[160] = "", *rest = copy, *end;
-    snprintf(copy, sizeof copy, "%s", text);
+    text_copy(copy, text);
     for (char *word; (word = strsep(&rest, " ,"));) {
         /* The key of "key=value". */
         const size_t length = strcspn(word, "=");

@@ -102,6 +102,9 @@ Status fail_no_word(Err *err, Status code, const char *where, const char *word, 
 #define MIN_OF(a, b) ((a) < (b) ? (a) : (b))
 #define MAX_OF(a, b) ((a) > (b) ? (a) : (b))
 
+/* As much of a text as the array has room for, with its zero. */
+#define text_copy(array, text) ((void)snprintf(array, sizeof(array), "%s", text))
+
 /* Zeroed memory for n of what the pointer points to; where it is refused the function returns, as by TRY. what: of the
  * many, "designs", or with n = 1 of one, "a run". */
 #define TRY_ROOM(pointer, n, what, err)                                                                                \

@@ -290,7 +290,7 @@ static void print_row(FILE *out, json_t *columns, const json_t *row, size_t from
         char text[CELL_MAX], head_text[CELL_MAX];
         if (at > 0 && (at < from || at >= to))
             continue;
-        snprintf(text, sizeof text, "%s", name);
+        text_copy(text, name);
         if (row)
             cell_words(name, json_object_get(row, name), factor, text);
         const int blanks = (int)json_integer_value(width) - width_of(text, CELL_MAX);

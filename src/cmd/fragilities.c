@@ -87,7 +87,7 @@ static Status counts_of_table(Fragilities *f, const Table *t, Err *err)
                         "%s: wanted are three columns, an intensity (sa_g, say), exceeded and of, and 2 to %d rows",
                         t->path, IDA_LEVELS_MAX);
     TRY_ROOM(f->level, t->n_rows, "intensities", err);
-    snprintf(f->intensity, sizeof f->intensity, "%s", t->names[at]);
+    text_copy(f->intensity, t->names[at]);
     for (size_t i = 0; i < t->n_rows; i++) {
         const double *row = t->values + 3 * i, before = i > 0 ? f->level[i - 1] : 0;
         const double x = row[at], n = row[of], z = row[exceeded];
@@ -193,7 +193,7 @@ static void add_curve(const Fragilities *f, const Evaluations *e, const Limit *l
     snprintf(column, sizeof column, "median %s (95 %%)", e->intensity);
     figures_put_as(row, column, fit->median, c.low, c.high, "(");
     if (c.n == 0 || c.hits == 0 || c.hits == c.n)
-        snprintf(text, sizeof text, "%s", c.n == 0 ? "-" : c.hits == 0 ? "never" : "always");
+        text_copy(text, c.n == 0 ? "-" : c.hits == 0 ? "never" : "always");
     else if (isnan(from))
         snprintf(text, sizeof text, "not rising with intensity");
     else if (from > 0 && isfinite(to))

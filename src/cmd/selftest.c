@@ -64,43 +64,30 @@ typedef struct {
 /* Answers: `imtet check --self --json` with the kernel avx512. Those of the kernels base and avx2 are within 2e-10
  * without impacts and 2e-7 with them: every window ends before the horizon of its design (`imtet simulate
  * --horizon`). */
+/* clang-format off */
 static const TowerCase TOWER[] = {
-    {"no core",
-     {"building.model=guyan", "motion.record=builtin:kobe-like"},
-     SCENE_NO_CORE,
-     0,
-     0,
-     1e-7,
+    {"no core", {"building.model=guyan", "motion.record=builtin:kobe-like"},
+     SCENE_NO_CORE, 0, 0, 1e-7,
      {1.646113691, 0.1473848287, 0.8986694482, 86.6997593, 0.01044833568, 0, 0}},
     {"rigidly connected",
      {"building.model=appendix", "motion.record=builtin:sylmar-like", "core.theory=euler_bernoulli"},
-     SCENE_RIGID,
-     0,
-     0.02,
-     1e-7,
+     SCENE_RIGID, 0, 0.02, 1e-7,
      {0.6931614571, 0.04669374364, 1.373484041, 87.02461826, 0.003746002645, 8.526798518, 572175.9245}},
     {"gaps of 10 mm",
      {"building.model=guyan", "motion.record=builtin:kobe-like", "sim.duration_s=28"},
-     SCENE_IMPACT,
-     0.01,
-     0.02,
-     1e-5,
+     SCENE_IMPACT, 0.01, 0.02, 1e-5,
      {0.8115126742, 0.05226552064, 4.407969498, 12.96081955, 0.3677359945, 9.383881178, 572175.9245}},
     {"gaps of 50 mm",
      {"building.model=appendix", "motion.record=builtin:elcentro-like", "sim.duration_s=8", "contact.law=exact"},
-     SCENE_IMPACT,
-     0.05,
-     0.02,
-     1e-5,
+     SCENE_IMPACT, 0.05, 0.02, 1e-5,
      {0.8078311797, 0.06887702891, 9.167003244, 13.77227494, 1.565192374, 12.44006187, 572175.9245}},
     {"gaps of 200 mm",
      {"building.model=guyan", "motion.record=builtin:sylmar-like"},
-     SCENE_IMPACT,
-     0.2,
-     0.02,
-     1e-5,
+     SCENE_IMPACT, 0.2, 0.02, 1e-5,
      {0.8246970473, 0.08326183464, 13.83492727, 26.62471704, 7.281239473, 32.61952035, 572175.9245}},
 };
+/* clang-format on */
+
 static Status set_all(Settings *s, const char *const assignments[], size_t n_max, Err *err)
 {
     settings_defaults(s);

@@ -51,7 +51,7 @@ static void tell(void *, Worker *w, Outcome outcome, const char *reason)
     ExternalAnswer *a = w->task[w->n_done].result;
     a->outcome = outcome;
     a->seconds = clock_seconds() - w->asked;
-    snprintf(a->reason, sizeof a->reason, "%s", reason);
+    text_copy(a->reason, reason);
 }
 
 /* Is it a list of min to max finite numbers? */
@@ -252,7 +252,7 @@ static Status create(External *e, const ProblemOptions *o, size_t n_workers, Err
     TRY(read_bounds("problem.lower", o->lower, n_var, e->lower, err));
     TRY(read_bounds("problem.upper", o->upper, n_var, e->upper, err));
     if (!kinds_are_real(o->kinds)) {
-        snprintf(e->kinds, sizeof e->kinds, "%s", o->kinds);
+        text_copy(e->kinds, o->kinds);
         TRY_ROOM(e->kind, n_var, "variables", err);
         TRY(kinds_read(e->kinds, n_var, e->kind, e->lower, &e->steps, err));
     }

@@ -57,7 +57,7 @@ Measured measured(const SimResult *r)
     Measured m = {.seconds = r->seconds, .outcome = r->outcome};
     for (int k = 0; k < N_MEASURES; k++)
         m.value[k] = measure_value(r, k);
-    snprintf(m.reason, sizeof m.reason, "%s", r->reason);
+    text_copy(m.reason, r->reason);
     return m;
 }
 

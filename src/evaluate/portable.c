@@ -68,7 +68,7 @@ static Status add_record(const char *source, void *user, Err *err)
     Making *making = user;
     MotionOptions o = *making->options;
     Motion m = {0};
-    snprintf(o.record, sizeof o.record, "%s", source);
+    text_copy(o.record, source);
     TRY(motion_open(&m, &o, err));
     walk_motion(&making->pack, o.record, &m);
     motion_free(&m);

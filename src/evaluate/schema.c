@@ -82,7 +82,7 @@ Status schema_of(Schema *schema, const Settings *s, int n_floors, Err *err)
     for (int k = 0; k < schema->order.n; k++) {
         Column *c = &schema->column[schema->n_var + k];
         const int m = schema->order.of[k];
-        snprintf(c->name, sizeof c->name, "%s", measures_name(&schema->order, m));
+        text_copy(c->name, measures_name(&schema->order, m));
         c->sense = measure(m)->sense;
         if (k >= schema->order.n_obj && schema->order.limited >> m & 1)
             schema->limited[schema->n_limited++] = k - schema->order.n_obj;

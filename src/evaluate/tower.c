@@ -199,11 +199,8 @@ static Status simulate(void *self, size_t worker, const Task *task, Err *err)
     }
 
     /* 2. The run, to the end of the motion or of its strong part. */
-    const Scenario *scenario = t->place[place].scenario;
     sim_worker_device(w, &(LinearDevice){v->device[0], v->device[1], v->device[2]});
-    sim_worker_until(
-        w, v->is_brief ? motion_strong_part(&scenario->motion, 2 * M_PI / scene_building(scenario->scene)->omega[0])
-                       : INFINITY);
+    sim_worker_brief(w, v->is_brief);
     TRY(sim_run_built(w, kind, &design, result, err));
 
     /* 3. What it is judged by. */
@@ -220,7 +217,7 @@ static const Simulator HERE = {.simulate = simulate};
 static void write_lost(const Task *task, const char *reason)
 {
     SimResult lost = {.outcome = RUN_ENGINE_FAILED};
-    snprintf(lost.reason, sizeof lost.reason, "%s", reason);
+    text_copy(lost.reason, reason);
     *(Measured *)task->result = measured(&lost);
     if (task->variant.is_full)
         ((FullResult *)task->result)->result = lost;

@@ -157,7 +157,7 @@ Status builtin_motion(Motion *m, const char *source, Err *err)
     }
     m->is_corrected = of_suite > 0; /* its ground ends where it began */
     m->file_hash = hash_fnv1a(m->accel, m->n * sizeof *m->accel, HASH_SEED);
-    snprintf(m->name, sizeof m->name, "%s", source);
+    text_copy(m->name, source);
     snprintf(m->format, sizeof m->format, "builtin");
     return STATUS_OK;
 }

@@ -301,7 +301,7 @@ static Status check_peak(Motion *m, const Series *s, double offset, double to_m_
              c->peak * to_file);
     if (error > PEAK_ERROR_MAX)
         return bad_data(err, "%s: %s; more than %g %% apart", s->path, what, 100 * PEAK_ERROR_MAX);
-    snprintf(m->warning, sizeof m->warning, "%s", error > 0.2 * PEAK_ERROR_MAX ? what : c->warning ? c->warning : "");
+    text_copy(m->warning, error > 0.2 * PEAK_ERROR_MAX ? what : c->warning ? c->warning : "");
     return STATUS_OK;
 }
 
@@ -464,9 +464,9 @@ Status motion_parse(Motion *m, const char *path, const char *text, size_t length
             text_join(m->warning, sizeof m->warning, "; ", "motion.dt_s = %g is not used: the file says %.6g s",
                       how->dt_s, m->dt_s);
         m->is_corrected = c->is_corrected;
-        snprintf(m->name, sizeof m->name, "%s", path);
-        snprintf(m->format, sizeof m->format, "%s", c->format);
-        snprintf(m->channel, sizeof m->channel, "%s", c->name);
+        text_copy(m->name, path);
+        text_copy(m->format, c->format);
+        text_copy(m->channel, c->name);
         m->file_hash = hash_fnv1a(text, length, HASH_SEED);
     }
     record_free(r);

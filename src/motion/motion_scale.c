@@ -135,7 +135,7 @@ Status target_parse(const char *text, CodeSpectrum *c, Err *err)
     *c = (CodeSpectrum){TARGET_NONE};
     if (!list_is_given(text))
         return STATUS_OK;
-    snprintf(copy, sizeof copy, "%s", text);
+    text_copy(copy, text);
     const char *word = strsep(&rest, " ");
     const int is_eurocode = strcmp(word, "eurocode8") == 0, kind = is_eurocode ? TARGET_EUROCODE8 : TARGET_ASCE7;
     if (!is_eurocode && strcmp(word, "asce7") != 0)

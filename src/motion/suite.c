@@ -38,7 +38,7 @@ Status source_read(const char *text, Source *out, Err *err)
     const char *last = strrchr(out->path, ' '); /* of a path that is there, or of a misspelt word behind one */
     if (last && strchr(last, '=') && access(out->path, F_OK) != 0)
         return bad_data(err, NO_WORD, (int)(last - out->path), out->path, last + 1);
-    snprintf(words, sizeof words, "%s", text + length);
+    text_copy(words, text + length);
     for (char *word; (word = strsep(&rest, " \t"));) {
         int k = 0;
         while (k < N_WORDS && strncmp(word, WORDS[k] + 1, strlen(WORDS[k]) - 1) != 0)
@@ -52,7 +52,7 @@ Status source_read(const char *text, Source *out, Err *err)
             return bad_data(err, "%s: '%s': give it once", out->path, word);
         seen |= 1U << k;
         if (k == CHANNEL) {
-            snprintf(out->channel, sizeof out->channel, "%s", value + 1);
+            text_copy(out->channel, value + 1);
             continue;
         }
         const double number = *(k == FACTOR ? &out->factor : &out->rate) = strtod(value + 1, &end);

@@ -8,7 +8,7 @@ Status text_form_parse(const char *text, TextForm *form, Err *err)
     *form = (TextForm){0};
     if (!*text || strcmp(text, "auto") == 0)
         return STATUS_OK;
-    snprintf(words, sizeof words, "%s", text);
+    text_copy(words, text);
     for (char *word; (word = strsep(&rest, ", "));) {
         size_t k = 0;
         if (!*word)

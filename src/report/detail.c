@@ -28,7 +28,7 @@ static Status take_here(const Problem *p, const double x[], const DetailOptions 
         d->thickness_m[j] = design_thickness(scene_design(w->scene), &design, j);
         d->bumper_n_m[j] = design.bumper[j] >= 0 ? design.bumper[j] : as_set;
     }
-    snprintf(d->record, sizeof d->record, "%s", w->motion.name);
+    text_copy(d->record, w->motion.name);
     d->pga_g = motion_peak(&w->motion) / GRAVITY;
     d->scale = w->motion.scale;
     d->stretch = w->motion.stretch;
@@ -75,7 +75,7 @@ static Status take_elsewhere(const Settings *other, const char *record, const do
     TRY(tower_open(&p, &s, TOWER_SINGLE, 2, err));
     const Motion *m = &tower_record(tower_of(&p), 0)->motion;
     const Status status = tower_simulate(&p, 2, tasks, results, err);
-    snprintf(e->record, sizeof e->record, "%s", m->name);
+    text_copy(e->record, m->name);
     e->pga_g = motion_peak(m) / GRAVITY;
     e->scale = m->scale;
     e->stretch = m->stretch;

@@ -241,7 +241,7 @@ json_t *report_json(const Report *r)
 {
     const Run *run = r->run;
     char name[PATH_MAX];
-    snprintf(name, sizeof name, "%s", run->folder);
+    text_copy(name, run->folder);
     for (size_t n = strlen(name); n > 1 && name[n - 1] == '/'; n--)
         name[n - 1] = 0;
     const char *slash = strrchr(name, '/');

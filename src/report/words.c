@@ -21,7 +21,7 @@ void words_of_rule(const Settings *s, char text[RULE_WORDS_MAX])
     if (s->sim.quantile > 0)
         snprintf(rule, sizeof rule, "quantile %g", s->sim.quantile);
     else
-        snprintf(rule, sizeof rule, "%s", n == 1 && s->sim.robust == ROBUST_WORST ? "mean" : RULES[s->sim.robust]);
+        text_copy(rule, n == 1 && s->sim.robust == ROBUST_WORST ? "mean" : RULES[s->sim.robust]);
     if (each > 1)
         snprintf(spread, sizeof spread, "%s%ld replicates", n > 1 ? " x " : "", each);
     text[0] = 0;

@@ -222,7 +222,7 @@ static Status read_frame(BuildingFiles *b, const BuildingOptions *o, Err *err)
     TRY(frame_read(&f, o, err));
     const int n = f.n_floors;
     Status status = STATUS_OK;
-    snprintf(b->note, sizeof b->note, "%s", f.note);
+    text_copy(b->note, f.note);
     if (b->floors.n == 0) {
         status = allocate(b, n, err);
         if (status == STATUS_OK) {

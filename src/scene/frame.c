@@ -21,7 +21,7 @@ static int by_name(const void *a, const void *b)
 int frame_find(const Frame *f, FrameKind kind, const char *name)
 {
     Entry wanted = {.kind = kind};
-    snprintf(wanted.name, sizeof wanted.name, "%s", name);
+    text_copy(wanted.name, name);
     Entry *const *found = tfind(&wanted, &f->names, by_name);
     return found ? (*found)->index : -1;
 }
@@ -46,7 +46,7 @@ static Status add_part(Frame *f, FrameKind kind, void *list, const void *part, s
     Entry *entry;
     TRY_ROOM(entry, 1, "the name of a part", err);
     *entry = (Entry){.kind = kind, .index = (int)n};
-    snprintf(entry->name, sizeof entry->name, "%s", name);
+    text_copy(entry->name, name);
     if (!tsearch(entry, &f->names, by_name)) {
         free(entry);
         return fail_memory(err, 1, "the name of a part");

@@ -23,7 +23,7 @@ static Status look_up(const Frame *f, FrameKind kind, const char *column, const 
 static Status add_node(void *frame, const SheetRow *r, Err *err)
 {
     FrameNode node = {.x = r->x[1], .z = r->x[2], .floor = (int)fmin(r->x[6], 1e6)};
-    snprintf(node.name, sizeof node.name, "%s", r->word[0]);
+    text_copy(node.name, r->word[0]);
     set_switches(node.fixed, &r->x[3]);
     set_switches(node.keep, &r->x[7]);
     if (node.floor != r->x[6])
@@ -40,7 +40,7 @@ static Status add_section(void *frame, const SheetRow *r, Err *err)
                             .shear_area = r->x[4],
                             .poisson = r->x[5],
                             .mass_per_m = r->x[6]};
-    snprintf(section.name, sizeof section.name, "%s", r->word[0]);
+    text_copy(section.name, r->word[0]);
     return frame_add_section(frame, &section, err);
 }
 
@@ -48,7 +48,7 @@ static Status add_section(void *frame, const SheetRow *r, Err *err)
 static Status add_element(void *frame, const SheetRow *r, Err *err)
 {
     FrameElement e = {.pinned = {(int)r->x[4], (int)r->x[5]}, .added_mass = r->x[6]};
-    snprintf(e.name, sizeof e.name, "%s", r->word[0]);
+    text_copy(e.name, r->word[0]);
     TRY(look_up(frame, FRAME_NODES, "node_i", r->word[1], &e.node[0], err));
     TRY(look_up(frame, FRAME_NODES, "node_j", r->word[2], &e.node[1], err));
     TRY(look_up(frame, FRAME_SECTIONS, "section", r->word[3], &e.section, err));

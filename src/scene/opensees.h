@@ -18,7 +18,6 @@
  * what yields, which is refused else. */
 Status opensees_read(Frame *f, const char *path, double length_m, double force_n, int takes_initial, Err *err);
 
-/* The program writes to its standard output, a file, "FILE:LINE" of the command under way; behind UNDER_WAY_MAX
- * bytes "refused TEXT", or "note TEXT" and a line for each node, tie and element (src/opensees/model.tcl:
- * print_frame). */
+/* The program writes to its standard output, a file, "FILE:LINE" of the command under way; behind UNDER_WAY_MAX bytes
+ * "refused TEXT", or "note TEXT" and a line for each node, tie and element (src/opensees/model.tcl: print_frame). */
 enum { OPENSEES_SECONDS = 10, UNDER_WAY_MAX = 512 };

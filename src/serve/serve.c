@@ -165,7 +165,7 @@ static Answer refusal(struct MHD_Connection *c, unsigned code, const char *words
     const char *wanted = MHD_lookup_connection_value(c, MHD_HEADER_KIND, MHD_HTTP_HEADER_ACCEPT);
     Answer a = {.code = code, .type = PAGE_TYPE};
     char said[sizeof(Err)];
-    snprintf(said, sizeof said, "%s", words);
+    text_copy(said, words);
     for (char *p = said; (p = strpbrk(p, "<&")); *p = ' ') /* of a path, say */
         ;
     if (wanted && strstr(wanted, "text/html") && asprintf(&a.text, REFUSED, code, code, said) > 0)
@@ -342,7 +342,7 @@ static Status show_newest(Visit *v, Answer *a, Err *)
         const Run *run = &view.snapshot->run;
         const char *started = run->n_sessions > 0 ? run->session[run->n_sessions - 1].started : "";
         if (strcmp(started, latest) >= 0) {
-            snprintf(latest, sizeof latest, "%s", started);
+            text_copy(latest, started);
             newest = i;
         }
         watch_give(&view);

@@ -126,8 +126,8 @@ static void add(const char *folder, const char *name, void *user)
     Watched *r = w->n < RUNS_MAX ? calloc(1, sizeof *r) : NULL;
     if (!r)
         return;
-    snprintf(r->folder, sizeof r->folder, "%s", folder);
-    snprintf(r->name, sizeof r->name, "%s", name);
+    text_copy(r->folder, folder);
+    text_copy(r->name, name);
     pthread_mutex_init(&r->mutex, NULL);
     w->run[w->n++] = r;
 }

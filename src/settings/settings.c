@@ -430,7 +430,7 @@ static Status assign_choice(Settings *s, const Option *o, const char *value, Err
         char copy[512], *rest = copy, range[64] = "";
         const char *list[WORDS_MAX];
         int n = 0;
-        snprintf(copy, sizeof copy, "%s", o->words);
+        text_copy(copy, o->words);
         for (char *word; n < WORDS_MAX && (word = strsep(&rest, "|"));)
             list[n++] = word;
         const char *near = nearest_word(value, list, n);

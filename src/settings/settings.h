@@ -32,8 +32,7 @@ void settings_place(const char *path, SettingGivenFn is_given, const void *user,
 Status settings_parse(Settings *s, const char *path, const char *text, Err *err);
 
 /* When a run is resumed, a limit may be changed on request; a free setting changes no result (files are told apart by
- * their content). An output is a path that is written: it stays as it is. A first study
- * touches the basic ones. */
+ * their content). An output is a path that is written: it stays as it is. A first study touches the basic ones. */
 typedef enum { SETTING_LIMIT = 1, SETTING_FREE = 2, SETTING_OUTPUT = 4, SETTING_BASIC = 8 } SettingFlags;
 
 /* Calls `differs` for every setting that is not the same in both, in the order of the table, values as text. */

@@ -83,7 +83,7 @@ static void anchor_command(char command[OPTION_TEXT_MAX], Reading *r)
     for (char *at = skip_blanks(command); *at && !is_script; is_program = 0) {
         size_t n = strcspn(at, " \t");
         snprintf(word, sizeof word, "%.*s", (int)n, at);
-        snprintf(rest, sizeof rest, "%s", at + n);
+        text_copy(rest, at + n);
         is_script = !is_program && *word != '-';
         if (strpbrk(word, "'\"\\"))
             return;
@@ -324,7 +324,7 @@ static void find_path(const char *key, const char *path, void *user)
 {
     Named *n = user;
     if (!n->key[0] && begins(n->message, path, ":/"))
-        snprintf(n->key, sizeof n->key, "%s", key);
+        text_copy(n->key, key);
 }
 
 void settings_place(const char *path, SettingGivenFn is_given, const void *user, Err *err)

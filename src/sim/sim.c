@@ -22,6 +22,7 @@ struct Scene {
     DesignSpace design;
     CoreBeam *neighbour; /* NULL: the core is a beam of the design */
     const EngineEntry *engine;
+    double strong_s;    /* end of the motion's strong part (motion_strong_part) */
     double *tail_input; /* (n of the motion), NULL without one */
     EngineOptions run;  /* of every run; each worker adds its own work space and sample function */
 };
@@ -119,6 +120,7 @@ Status scene_create(Scene **out, const SceneOptions *o, const Motion *motion, Er
         status = bad_data(err, "motion.forces: column floor_%02d_n; the building has %d floors", motion->n_force,
                           scene->building.n);
     if (status == STATUS_OK && motion) {
+        scene->strong_s = motion_strong_part(motion, 2 * M_PI / scene->building.omega[0]);
         double *input = calloc(motion->n, sizeof *input);
         scene->run.tail_input = scene->tail_input = input;
         status = input ? tail_input(&scene->building.model, motion, input, err)
@@ -337,7 +339,7 @@ static Status run_engine(SimWorker *w, SimResult *r, Err *err)
                      r->energy_balance_error, open_max);
         }
         if (r->outcome != RUN_OK && !r->reason[0])
-            snprintf(r->reason, sizeof r->reason, "%s", run_outcome_words(r->outcome));
+            text_copy(r->reason, run_outcome_words(r->outcome));
         if (r->outcome != RUN_ENERGY_BALANCE)
             break;
     }
@@ -391,9 +393,9 @@ void sim_worker_device(SimWorker *worker, const LinearDevice *device)
     worker->device = *device;
 }
 
-void sim_worker_until(SimWorker *worker, double seconds)
+void sim_worker_brief(SimWorker *worker, int is_brief)
 {
-    worker->run.duration = fmin(worker->scene->run.duration, seconds);
+    worker->run.duration = fmin(worker->scene->run.duration, is_brief ? worker->scene->strong_s : INFINITY);
 }
 
 /* The model of a design with its gaps, bumpers and devices. core NULL: none. exponent: of links. */
@@ -559,24 +561,27 @@ static Status run_once(SimWorker *w, SceneKind kind, const Design *d, SimResult 
 /* Simulations until the walls that buckle bend as their largest stress lets them, within WALLS_OFF of each share: first
  * whole, then the secant's step in the logarithms of each storey: what is left, over what is assumed, falls with the
  * assumed share, at first to a power of WALLS_POWER; between -1 and 0, so that it settles where a stiffer core has
- * more. 46 simulations of bare walls took 4.6, 4.9, 5.3 and 5.2 passes with powers of -0.2, -0.4, -0.6 and -1. */
+ * more. 46 simulations of bare walls took 4.6, 4.9, 5.3 and 5.2 passes with powers of -0.2, -0.4, -0.6 and -1. Where
+ * contacts are followed to the end, walls settle on the strong part of the motion first: the last pass is whole. */
 enum { WALLS_MAX = 16 };
 static const double WALLS_OFF = 0.01, WALLS_POWER = -0.4;
 
-Status sim_run_built(SimWorker *w, SceneKind kind, const Design *d, SimResult *result, Err *err)
+static Status settle_walls(SimWorker *w, SceneKind kind, const Design *d, SimResult *result, Err *err)
 {
-    const PriceOptions *price = &w->scene->options.design.prices;
-    const double start = clock_seconds();
-    const int has_walls = w->options->core.wall == WALL_EFFECTIVE && SCENES[kind].has & HAS_CORE;
+    const double whole_s = w->run.duration;
     double *share = w->own_options.core.wall_share, assumed[FLOORS_MAX], found[FLOORS_MAX]; /* logarithms */
-    w->is_joined = (SCENES[kind].has & IS_JOINED) != 0;
-    if (has_walls)
-        memset(share, 0, sizeof w->own_options.core.wall_share);
-    for (int pass = 0; pass < (has_walls ? WALLS_MAX : 1); pass++) {
-        TRY(run_once(w, kind, d, result, err));
-        if (result->outcome != RUN_OK || !(result->forces.core_wall_share_off > WALLS_OFF))
+    Status status = STATUS_OK;
+    memset(share, 0, sizeof w->own_options.core.wall_share);
+    for (int pass = 0, n_whole = 0; pass < WALLS_MAX; pass++) {
+        n_whole += w->run.duration == whole_s;
+        status = run_once(w, kind, d, result, err);
+        const int is_settled = !(result->forces.core_wall_share_off > WALLS_OFF);
+        if (status != STATUS_OK || result->outcome != RUN_OK || (is_settled && w->run.duration == whole_s))
             break;
-        for (int s = 0; s < result->n_floors && has_walls && pass + 1 < WALLS_MAX; s++) {
+        w->run.duration = fmin(whole_s, is_settled || n_whole > 1 || result->settled_s > 0 || pass + 2 == WALLS_MAX
+                                            ? whole_s
+                                            : w->scene->strong_s);
+        for (int s = 0; s < result->n_floors && !is_settled && pass + 1 < WALLS_MAX; s++) {
             const double x = share[s] > 0 ? log(share[s]) : 0, left = log(result->forces.core_wall_share[s]);
             const double power = pass > 0 && x != assumed[s] ? (left - found[s]) / (x - assumed[s]) : WALLS_POWER;
             assumed[s] = x;
@@ -584,6 +589,17 @@ Status sim_run_built(SimWorker *w, SceneKind kind, const Design *d, SimResult *r
             share[s] = exp(x + (left - x) / (1 - fmin(fmax(power, -1), 0)));
         }
     }
+    w->run.duration = whole_s;
+    return status;
+}
+
+Status sim_run_built(SimWorker *w, SceneKind kind, const Design *d, SimResult *result, Err *err)
+{
+    const PriceOptions *price = &w->scene->options.design.prices;
+    const double start = clock_seconds();
+    const int has_walls = w->options->core.wall == WALL_EFFECTIVE && SCENES[kind].has & HAS_CORE;
+    w->is_joined = (SCENES[kind].has & IS_JOINED) != 0;
+    TRY((has_walls ? settle_walls : run_once)(w, kind, d, result, err));
     TRY(complete(w, result, err));
     result->mcore_kg = kind == SCENE_NO_CORE ? 0 : w->core.mass_kg;
     if (kind != SCENE_TMD)

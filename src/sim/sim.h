@@ -78,8 +78,9 @@ Status sim_worker_as_built(SimWorker *worker, const AsBuilt *built, Err *err);
 /* Sets the device of SCENE_TMD and SCENE_LINKS in every run from now on. */
 void sim_worker_device(SimWorker *worker, const LinearDevice *device);
 
-/* Ends the simulations of this integrator at `seconds` where the scene's last longer; INFINITY: where they do. */
-void sim_worker_until(SimWorker *worker, double seconds);
+/* Ends the simulations of this integrator where the strong part of the motion does (motion_strong_part), or where the
+ * scene's do. */
+void sim_worker_brief(SimWorker *worker, int is_brief);
 
 /* x as above; ignored for SCENE_NO_CORE. */
 Status sim_run(SimWorker *worker, SceneKind kind, const double x[], SimResult *result, Err *err);

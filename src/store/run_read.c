@@ -279,7 +279,7 @@ Status run_load(Run *run, Database *d, const char *folder, RunParts parts, Err *
     evaluation_table_free(&l.polished);
     const Status end = database_do(d, status == STATUS_OK ? err : NULL, "COMMIT", "");
     THEN(status, end);
-    snprintf(run->folder, sizeof run->folder, "%s", folder);
+    text_copy(run->folder, folder);
     const int is_empty = parts == RUN_FRONT && run->n_front == 0; /* then what comes nearest is asked for */
     if (status != STATUS_OK || is_empty)
         run_free(run);

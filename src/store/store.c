@@ -406,7 +406,7 @@ Status store_session(RunStore *store, const char *program, int threads, size_t n
                       .surrogate_s = NAN};
     utc_now(s->started);
     gethostname(s->host, sizeof s->host - 1);
-    snprintf(s->program, sizeof s->program, "%s", program);
+    text_copy(s->program, program);
     TRY(put_session(store, err));
     TRY(flush(store, err));
     store->has_thread = 1;
@@ -637,7 +637,7 @@ Status store_close(RunStore *store, const char *stopped, int is_final, double se
     Run last = {0};
     Status status = store_flush(store, err);
     utc_now(s->ended);
-    snprintf(s->stopped, sizeof s->stopped, "%s", stopped);
+    text_copy(s->stopped, stopped);
     s->is_final = is_final;
     s->seconds = session;
     THEN(status, put_session(store, err));

@@ -130,7 +130,7 @@ static Status read_all(Run *to, size_t n, const char *const folders[], Run run[]
     first->settings = NULL;
     first->provenance = NULL;
     first->schema.column = NULL;
-    snprintf(to->folder, sizeof to->folder, "%s", first->folder);
+    text_copy(to->folder, first->folder);
     for (size_t k = 1; k < n; k++) {
         const size_t at = strlen(to->folder);
         snprintf(to->folder + at, sizeof to->folder - at, " + %s", folders[k]);

@@ -12,7 +12,7 @@ static const char RESULTS[] = "results";
 static int find_existing(const char *path, char found[PATH_MAX])
 {
     char part[PATH_MAX];
-    snprintf(part, sizeof part, "%s", path);
+    text_copy(part, path);
     while (!realpath(part, found)) {
         char *slash = strrchr(part, '/');
         if (errno != ENOENT || !slash || slash == part)

@@ -447,7 +447,7 @@ int study_finished(RunStore *store, StudySummary *summary, Run *run)
         return 0;
     if (store_read(store, RUN_FRONT, run, &(Err){0}) != STATUS_OK)
         return 0;
-    snprintf(summary->folder, sizeof summary->folder, "%s", store_folder(store));
+    text_copy(summary->folder, store_folder(store));
     summary->max_evals = run->settings->search.max_evals;
     sum_up(summary, run, 0, 0);
     return 1;

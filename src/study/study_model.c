@@ -55,8 +55,8 @@ static void read_ladder(const json_t *model, Ladder *l)
         if (l->n == LADDER_MAX)
             break;
         *e = (LadderEffect){.words = json_text(row, "without"), .key = json_text(row, "setting")};
-        snprintf(e->with, sizeof e->with, "%s", json_text(row, "with"));
-        snprintf(e->without, sizeof e->without, "%s", json_text(row, "otherwise"));
+        text_copy(e->with, json_text(row, "with"));
+        text_copy(e->without, json_text(row, "otherwise"));
         e->is_set = strcmp(json_text(row, "is_set"), "yes") == 0;
         e->is_kept = strcmp(json_text(row, "kept"), "yes") == 0;
         e->most = json_is_number(most) ? json_number_value(most) : INFINITY;

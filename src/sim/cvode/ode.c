@@ -170,7 +170,7 @@ void ode_keep_message(int code, const char *module, const char *function, char *
     (void)function;
     Ode *o = user;
     if (code < 0)
-        snprintf(o->message, sizeof o->message, "%s", text);
+        text_copy(o->message, text);
 }
 
 /* weight_i = 1 / (rtol |y_i| + tolerance_i) */
