@@ -14,103 +14,93 @@
 enum { N_SAMPLES = 43, PEAK_AT = 15 };
 static const double PEAK_GAL[] = {-123.4, 98.7, 85.6}, DT = 0.01;
 
-static const struct {
-    const char *file, *format, *channel;
+typedef struct {
+    const char *file, *format;
+    MotionHow how;
     int component;
     const char *name;
     double tolerance; /* of digits in the file */
-} SPECIMENS[] = {{"equals.at2", "at2", "auto", 0, "", 1e-6},
-                 {"columns.at2", "at2", "auto", 0, "", 1e-6},
-                 {"run_together.at2", "at2", "auto", 0, "", 1e-7},
-                 {"one.cosmos.v1", "cosmos", "auto", 0, "Other", 1e-9},
-                 {"three.cosmos.v2", "cosmos", "340", 0, "340 deg", 1e-9},
-                 {"three.cosmos.v2", "cosmos", "2", 1, "70 deg", 1e-9},
-                 {"three.cosmos.v2", "cosmos", "up", 2, "Up", 1e-9},
-                 {"three.csmip.v1", "csmip", "360 Deg", 0, "360 Deg", 1e-5},
-                 {"three.csmip.v1", "csmip", "90", 1, "90 Deg", 1e-5},
-                 {"three.csmip.v1", "csmip", "3", 2, "Up", 2e-5},
-                 {"three.csmip.v2", "csmip", "1", 0, "360 Deg", 1e-9},
-                 {"three.csmip.v2", "csmip", "90deg", 1, "90 Deg", 1e-9},
-                 {"three.csmip.v2", "csmip", "UP", 2, "Up", 1e-9},
-                 {"film.csmip.v1", "csmip", "auto", 0, "360 Deg", 1e-3},
-                 {"one.smc", "smc", "auto", 0, "360", 1e-9},
-                 {"one.knet", "knet", "ns", 0, "N-S", 1e-5},
-                 {"one.kiknet", "knet", "1", 1, "EW2", 1e-5},
-                 {"one.esm", "esm", "HNE", 0, "HNE", 1e-9},
-                 {"three.v1a", "geonet", "N28W", 0, "N28W", 1e-9},
-                 {"three.v1a", "geonet", "3", 2, "Up", 1e-9},
-                 {"three.v2a", "geonet", "S62W", 1, "S62W", 1e-9},
-                 {"jma.csv", "jma", "NS", 0, "NS", 1e-9},
-                 {"jma.csv", "jma", "EW", 1, "EW", 1e-9},
-                 {"jma.csv", "jma", "3", 2, "UD", 1e-9},
-                 {"end_mark.at2", "at2", "auto", 0, "", 1e-6},
-                 {"no_format.csmip.v2", "csmip", "2", 1, "90 Deg", 1e-9},
-                 {"wide.smc", "smc", "auto", 0, "360", 1e-9},
-                 {"film.smc", "smc", "auto", 0, "360", 1e-9},
-                 {"old.v1a", "geonet", "2", 1, "", 1e-9},
-                 {"afad.txt", "afad", "E-W", 1, "E-W", 1e-9},
-                 {"afad.txt", "afad", "ud", 2, "U-D", 1e-9},
-                 {"asa.unam", "unam", "N00E", 0, "N00E", 1e-9},
-                 {"asa.unam", "unam", "3", 2, "V", 1e-9},
-                 {"cwb.dat", "cwb", "N", 0, "N", 1e-9},
-                 {"cwb.dat", "cwb", "E", 1, "E", 1e-9},
-                 {"cwb.dat", "cwb", "1", 2, "U", 1e-9},
-                 {"three.bhrc", "bhrc", "L", 0, "L", 1e-6},
-                 {"three.bhrc", "bhrc", "V", 2, "V", 1e-6},
-                 {"two.usc", "usc", "N05W", 0, "N05W", 1e-3},
-                 {"two.usc", "usc", "S85E", 1, "S85E", 1e-3},
-                 {"isesd.cor", "isesd", "auto", 0, "NS", 1e-6},
-                 {"three.slist", "slist", "2", 1, "XX_SYN_00_HNE_D", 1e-6},
-                 {"one.tspair", "tspair", "auto", 0, "XX_SYN_00_HNN_D", 1e-6},
-                 {"one.csmnc", "csmnc", "auto", 0, "NS", 1e-6},
-                 {"one.csn", "csn", "auto", 0, "HNN", 1e-9},
-                 {"one_column.txt", "csv", "auto", 0, "", 1e-9},
-                 {"two_columns.txt", "csv", "auto", 0, NULL, 1e-9},
-                 {"many_columns.csv", "csv", "NS", 0, "NS", 1e-9},
-                 {"many_columns.csv", "csv", "2", 1, "EW", 1e-9},
-                 {"decimal_comma.csv", "csv", "auto", 0, "NS [cm/s2]", 1e-9},
-                 {"wrapped.txt", "csv", "auto", 0, "", 1e-9}};
+} Specimen;
+static const Specimen SPECIMENS[] = {{"equals.at2", "at2", {.channel = "auto"}, 0, "", 1e-6},
+                                     {"columns.at2", "at2", {.channel = "auto"}, 0, "", 1e-6},
+                                     {"run_together.at2", "at2", {.channel = "auto"}, 0, "", 1e-7},
+                                     {"one.cosmos.v1", "cosmos", {.channel = "auto"}, 0, "Other", 1e-9},
+                                     {"three.cosmos.v2", "cosmos", {.channel = "340"}, 0, "340 deg", 1e-9},
+                                     {"three.cosmos.v2", "cosmos", {.channel = "2"}, 1, "70 deg", 1e-9},
+                                     {"three.cosmos.v2", "cosmos", {.channel = "up"}, 2, "Up", 1e-9},
+                                     {"three.csmip.v1", "csmip", {.channel = "360 Deg"}, 0, "360 Deg", 1e-5},
+                                     {"three.csmip.v1", "csmip", {.channel = "90"}, 1, "90 Deg", 1e-5},
+                                     {"three.csmip.v1", "csmip", {.channel = "3"}, 2, "Up", 2e-5},
+                                     {"three.csmip.v2", "csmip", {.channel = "1"}, 0, "360 Deg", 1e-9},
+                                     {"three.csmip.v2", "csmip", {.channel = "90deg"}, 1, "90 Deg", 1e-9},
+                                     {"three.csmip.v2", "csmip", {.channel = "UP"}, 2, "Up", 1e-9},
+                                     {"film.csmip.v1", "csmip", {.channel = "auto"}, 0, "360 Deg", 1e-3},
+                                     {"one.smc", "smc", {.channel = "auto"}, 0, "360", 1e-9},
+                                     {"one.knet", "knet", {.channel = "ns"}, 0, "N-S", 1e-5},
+                                     {"one.kiknet", "knet", {.channel = "1"}, 1, "EW2", 1e-5},
+                                     {"one.esm", "esm", {.channel = "HNE"}, 0, "HNE", 1e-9},
+                                     {"three.v1a", "geonet", {.channel = "N28W"}, 0, "N28W", 1e-9},
+                                     {"three.v1a", "geonet", {.channel = "3"}, 2, "Up", 1e-9},
+                                     {"three.v2a", "geonet", {.channel = "S62W"}, 1, "S62W", 1e-9},
+                                     {"jma.csv", "jma", {.channel = "NS"}, 0, "NS", 1e-9},
+                                     {"jma.csv", "jma", {.channel = "EW"}, 1, "EW", 1e-9},
+                                     {"jma.csv", "jma", {.channel = "3"}, 2, "UD", 1e-9},
+                                     {"end_mark.at2", "at2", {.channel = "auto"}, 0, "", 1e-6},
+                                     {"no_format.csmip.v2", "csmip", {.channel = "2"}, 1, "90 Deg", 1e-9},
+                                     {"wide.smc", "smc", {.channel = "auto"}, 0, "360", 1e-9},
+                                     {"film.smc", "smc", {.channel = "auto"}, 0, "360", 1e-9},
+                                     {"old.v1a", "geonet", {.channel = "2"}, 1, "", 1e-9},
+                                     {"afad.txt", "afad", {.channel = "E-W"}, 1, "E-W", 1e-9},
+                                     {"afad.txt", "afad", {.channel = "ud"}, 2, "U-D", 1e-9},
+                                     {"asa.unam", "unam", {.channel = "N00E"}, 0, "N00E", 1e-9},
+                                     {"asa.unam", "unam", {.channel = "3"}, 2, "V", 1e-9},
+                                     {"cwb.dat", "cwb", {.channel = "N"}, 0, "N", 1e-9},
+                                     {"cwb.dat", "cwb", {.channel = "E"}, 1, "E", 1e-9},
+                                     {"cwb.dat", "cwb", {.channel = "1"}, 2, "U", 1e-9},
+                                     {"three.bhrc", "bhrc", {.channel = "L"}, 0, "L", 1e-6},
+                                     {"three.bhrc", "bhrc", {.channel = "V"}, 2, "V", 1e-6},
+                                     {"two.usc", "usc", {.channel = "N05W"}, 0, "N05W", 1e-3},
+                                     {"two.usc", "usc", {.channel = "S85E"}, 1, "S85E", 1e-3},
+                                     {"isesd.cor", "isesd", {.channel = "auto"}, 0, "NS", 1e-6},
+                                     {"three.slist", "slist", {.channel = "2"}, 1, "XX_SYN_00_HNE_D", 1e-6},
+                                     {"one.tspair", "tspair", {.channel = "auto"}, 0, "XX_SYN_00_HNN_D", 1e-6},
+                                     {"one.csmnc", "csmnc", {.channel = "auto"}, 0, "NS", 1e-6},
+                                     {"one.csn", "csn", {.channel = "auto"}, 0, "HNN", 1e-9},
+                                     {"one_column.txt", "csv", {.channel = "auto"}, 0, "", 1e-9},
+                                     {"two_columns.txt", "csv", {.channel = "auto"}, 0, NULL, 1e-9},
+                                     {"many_columns.csv", "csv", {.channel = "NS"}, 0, "NS", 1e-9},
+                                     {"many_columns.csv", "csv", {.channel = "2"}, 1, "EW", 1e-9},
+                                     {"decimal_comma.csv", "csv", {.channel = "auto"}, 0, "NS [cm/s2]", 1e-9},
+                                     {"wrapped.txt", "csv", {.channel = "auto"}, 0, "", 1e-9}};
 enum { N_SPECIMENS = sizeof SPECIMENS / sizeof *SPECIMENS };
 
 #define SPECIMEN(file) brief("tests/motion/%s", file)
 
 /* Format, samples, step and the largest sample; the channel's name where it is given. */
-static void check_specimen(const char *file, const char *format, const MotionHow *how, int component, const char *name,
-                           double tolerance)
+static void check_specimen(const Specimen *s)
 {
     OWNED(motion_free) Motion m;
-    CHECK_OK(motion_read(&m, SPECIMEN(file), how, &err), &err);
-    const double want = 0.01 * PEAK_GAL[component];
-    if (strcmp(m.format, format) != 0 || m.n != N_SAMPLES || fabs(m.dt_s - DT) > 1e-12 ||
-        !(fabs(m.accel[PEAK_AT] - want) <= tolerance * fabs(want)) || motion_peak(&m) != fabs(m.accel[PEAK_AT]))
-        fail_msg("%s: %s, %zu samples every %.9g s, %.9g at the peak of %.9g", file, m.format, m.n, m.dt_s,
+    CHECK_OK(motion_read(&m, SPECIMEN(s->file), &s->how, &err), &err);
+    const double want = 0.01 * PEAK_GAL[s->component];
+    if (strcmp(m.format, s->format) != 0 || m.n != N_SAMPLES || fabs(m.dt_s - DT) > 1e-12 ||
+        !(fabs(m.accel[PEAK_AT] - want) <= s->tolerance * fabs(want)) || motion_peak(&m) != fabs(m.accel[PEAK_AT]))
+        fail_msg("%s: %s, %zu samples every %.9g s, %.9g at the peak of %.9g", s->file, m.format, m.n, m.dt_s,
                  m.accel[PEAK_AT], want);
-    if (name)
-        assert_string_equal(m.channel, name);
+    if (s->name)
+        assert_string_equal(m.channel, s->name);
 }
 
 TEST(a_specimen_of_every_format_is_read_to_its_step_length_and_peak)
 {
     for (int i = 0; i < N_SPECIMENS; i++)
-        check_specimen(SPECIMENS[i].file, SPECIMENS[i].format, &(MotionHow){.channel = SPECIMENS[i].channel},
-                       SPECIMENS[i].component, SPECIMENS[i].name, SPECIMENS[i].tolerance);
+        check_specimen(&SPECIMENS[i]);
 }
 
 /* What is no text, or text whose unit is asked for. */
-static const struct {
-    const char *file, *format;
-    MotionHow how;
-    int component;
-    const char *name;
-    double tolerance;
-} BINARY[] = {
-    {"three.mseed", "mseed", {.channel = "1", .unit = UNIT_COUNTS, .counts_per_m_s2 = 1e5}, 0, "XX.SYN.00.HNN", 1e-6},
-    {"three.mseed",
-     "mseed",
-     {.channel = "XX.SYN.00.HNZ", .unit = UNIT_COUNTS, .counts_per_m_s2 = 1e5},
-     2,
-     "XX.SYN.00.HNZ",
-     1e-6},
+#define COUNTS .unit = UNIT_COUNTS, .counts_per_m_s2 = 1e5
+static const Specimen BINARY[] = {
+    {"three.mseed", "mseed", {.channel = "1", COUNTS}, 0, "XX.SYN.00.HNN", 1e-6},
+    {"three.mseed", "mseed", {.channel = "XX.SYN.00.HNZ", COUNTS}, 2, "XX.SYN.00.HNZ", 1e-6},
     {"little.sac", "sac", {.unit = UNIT_CM_S2}, 0, "HNN", 1e-6},
     {"little.sac", "sac", {.unit = UNIT_COUNTS, .counts_per_m_s2 = 100}, 0, "HNN", 1e-6},
     {"big.sac", "sac", {.unit = UNIT_G}, 1, "HNE", 1e-6},
@@ -125,8 +115,7 @@ enum { N_BINARY = sizeof BINARY / sizeof *BINARY };
 TEST(binary_files_and_archives_are_read_to_their_samples)
 {
     for (int i = 0; i < N_BINARY; i++)
-        check_specimen(BINARY[i].file, BINARY[i].format, &BINARY[i].how, BINARY[i].component, BINARY[i].name,
-                       BINARY[i].tolerance);
+        check_specimen(&BINARY[i]);
 }
 
 /* ---- changed specimens ---------------------------------------------------------------------------------------- */
@@ -199,7 +188,7 @@ TEST(line_ends_and_blanks_at_line_ends_do_not_matter)
             t = changed(t, "\n", *each, 1);
             t.text[t.length++] = 0x1a; /* the end mark of DOS */
             OWNED(motion_free)
-            Motion m = accept_text(SPECIMENS[i].file, t, &(MotionHow){.channel = SPECIMENS[i].channel});
+            Motion m = accept_text(SPECIMENS[i].file, t, &SPECIMENS[i].how);
             assert_int_equal(m.n, N_SAMPLES);
         }
 }
@@ -548,7 +537,8 @@ TEST(a_setting_may_not_contradict_the_unit_of_any_format)
     for (int i = 0; i < N_SPECIMENS; i++) {
         const int in_g = strstr(SPECIMENS[i].file, ".at2") || strstr(SPECIMENS[i].file, "csmip.v1") ||
                          strstr(SPECIMENS[i].file, "bhrc") || strstr(SPECIMENS[i].file, "usc");
-        refused(SPECIMENS[i].file, &(MotionHow){.channel = SPECIMENS[i].channel, .unit = in_g ? UNIT_CM_S2 : UNIT_G},
+        refused(SPECIMENS[i].file,
+                &(MotionHow){.channel = SPECIMENS[i].how.channel, .unit = in_g ? UNIT_CM_S2 : UNIT_G},
                 "motion.unit is");
     }
 }

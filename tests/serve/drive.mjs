@@ -9,13 +9,12 @@ import { join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
 import { compare } from "../engine/forty.mjs";
 import { pause, picture, saved, tryAll } from "../report/browser.mjs";
-const [imtet, folder, given, pictures] = process.argv.slice(2);
+const [imtet, folder, given, pictures] = process.argv.slice(2), children = [];
 const isBench = folder === "--bench", isPictures = folder === "--pictures", root = resolve(isBench || isPictures ? given ?? "" : join(folder ?? "", "runs"));
 if (!(isBench || isPictures ? given : folder) || !existsSync(root)) {
   console.error(`usage: drive.mjs IMTET FOLDER [REPORT.html ...] | --bench RUN | --pictures FOLDER OUT (make serve-bench RUN=results/NAME)${given ? `; ${root} is not there` : ""}`);
   process.exit(64);
 }
-const children = [];
 
 function start(...words) {
   const child = spawn(imtet, words, { stdio: ["ignore", "pipe", "ignore"] });
