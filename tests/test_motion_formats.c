@@ -110,11 +110,10 @@ static const Specimen BINARY[] = {
     {"knet.tar.gz", "knet", {.channel = "EW"}, 1, "E-W, knet/SYN0010101010000.EW", 1e-5},
     {"knet.tar.gz", "knet", {.channel = "3"}, 2, "U-D, knet/SYN0010101010000.UD", 1e-5},
     {"cesmd.zip", "csmip", {.channel = "90 deg"}, 1, "90 Deg, SYN01.V2, syn_event.zip", 1e-9}};
-enum { N_BINARY = sizeof BINARY / sizeof *BINARY };
 
 TEST(binary_files_and_archives_are_read_to_their_samples)
 {
-    for (int i = 0; i < N_BINARY; i++)
+    for (int i = 0; i < (int)N_OF(BINARY); i++)
         check_specimen(&BINARY[i]);
 }
 
@@ -616,7 +615,7 @@ TEST(five_thousand_mutants_are_read_or_refused)
 TEST(a_mutated_binary_file_or_archive_is_read_or_refused)
 {
     uint64_t random = 2;
-    for (int i = 0; i < N_BINARY; i++) {
+    for (int i = 0; i < (int)N_OF(BINARY); i++) {
         const Text t = read_specimen(BINARY[i].file);
         for (int k = 0; k < 100; k++) {
             Text one = mutated(&t, &random);

@@ -203,7 +203,7 @@ TEST(a_number_that_is_none_is_refused_with_the_unit_that_is_wanted)
 
 TEST(a_price_is_a_number_that_is_given_once)
 {
-    refused("design.prices=gap=3 gap=4", STATUS_BAD_DATA, "design.prices: gap stands twice; the second is 'gap=4'");
+    refused("design.prices=gap=0, gap=4", STATUS_BAD_DATA, "design.prices: gap stands twice; the second is 'gap=4'");
     refused("design.prices=", STATUS_BAD_DATA, "design.prices: is empty");
 }
 
@@ -272,12 +272,13 @@ TEST(a_text_comes_back_from_a_file_as_it_was_or_is_refused)
     for (int k = 0, n = sizeof LETTERS; k < n * n * n * n; k++) {
         const char text[] = {LETTERS[k % n], LETTERS[k / n % n], LETTERS[k / n / n % n], LETTERS[k / n / n / n], 0};
         const int is_kept = comes_back(text);
-        assert_true(is_kept || !*text || strchr(text, '\\') || (strchr(text, '"') && strchr(text, '\'')));
+        assert_true(is_kept || !*text || strchr(" \t", *text) || strchr(" \t", text[strlen(text) - 1]) ||
+                    strchr(text, '\\') || (strchr(text, '"') && strchr(text, '\'')));
         n_kept += is_kept;
     }
-    assert_less(10000, n_kept);
+    assert_less(7000, n_kept);
     assert_true(comes_back(memset(path, 'x', sizeof path - 1)));
-    assert_false(comes_back("a\nb.csv") || comes_back("'a' \"b\" #1"));
+    assert_false(comes_back("a\nb.csv") || comes_back("'a' \"b\" #1") || comes_back(" a"));
 }
 
 TEST(all_faults_of_a_file_are_listed_with_their_lines)

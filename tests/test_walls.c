@@ -139,13 +139,13 @@ TEST(walls_that_buckle_bend_as_the_stress_of_their_own_simulation_leaves_them)
 /* Contacts go on long beyond the strong part, which ends at 18.5 s. */
 TEST(walls_that_settle_on_the_strong_part_of_a_motion_are_those_of_all_of_it)
 {
-    SceneOptions s = paper_scene(), brief;
+    SceneOptions s = paper_scene();
     s.sim.forces = FORCES_YES;
     s.core.wall = WALL_EFFECTIVE;
     s.building.yield_drift = 0.003;
     s.building.damping.at[0] = 0.015;
     s.sim.duration_s = 60;
-    brief = s;
+    SceneOptions brief = s;
     brief.sim.duration_s = 18.47;
     const SimResult whole = simulated(&s, SCENE_IMPACT, ENGINE_FAST),
                     strong = simulated(&brief, SCENE_IMPACT, ENGINE_FAST);

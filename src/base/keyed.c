@@ -12,6 +12,7 @@ Status keyed_numbers(const char *setting, const char *text, unsigned kind, size_
                      double x[], Err *err)
 {
     char copy[OPTION_TEXT_MAX], all[160] = "", *rest = copy, *end;
+    unsigned seen = 0;
     text_copy(copy, text);
     for (char *word; (word = strsep(&rest, " ,"));) {
         /* The key of "key=value". */
@@ -32,8 +33,9 @@ Status keyed_numbers(const char *setting, const char *text, unsigned kind, size_
         /* Its value; none twice, for the other one would be lost. */
         const KeyedNumber *k = &keys[i];
         const char *value = word + length + (word[length] == '=');
-        if (x[i] != 0)
+        if (seen >> i & 1)
             return bad_data(err, "%s: %s stands twice; the second is '%.60s'", setting, k->key, word);
+        seen |= 1U << i;
         x[i] = strtod(value, &end);
         if (k->letters && *value >= 'A' && *value <= last_letter(k)) {
             x[i] = *value - 'A' + 1;

@@ -120,7 +120,7 @@ const char *nearest_word(const char *word, const char *const list[], int n)
             nearest = list[i];
             least = 0;
         }
-    for (int i = 0; i < n; i++) { /* lengths differ by no more than words do */
+    for (int i = 0; i < n; i++) { /* words differ by no less than their lengths */
         const int apart = abs((int)strlen(list[i]) - (int)length),
                   d = apart < least ? edit_distance(word, list[i]) : apart;
         if (d < least) {

@@ -26,7 +26,7 @@ static void print_floors(FILE *out, const char *format, int n_floors)
     }
 }
 
-/* Of designs by number; a run may be repeated with shorter steps: only the last attempt counts. */
+/* Of designs by number. A run may be repeated with shorter steps, or walls that bend: only the last attempt counts. */
 typedef struct {
     const SimWorker *worker;
     FILE *out;
@@ -36,11 +36,17 @@ typedef struct {
 
 static Rows rows_of(const TimeJob *job, const SimWorker *worker, size_t i, FILE *out)
 {
-    return (Rows){.worker = worker,
-                  .out = out,
-                  .design = design_number(job->designs, i),
-                  .n_floors = scene_n_floors(job->scene),
-                  .wanted = job->results[i].repeated + 1};
+    const long design = design_number(job->designs, i);
+    return (Rows){.worker = worker, .out = out, .design = design, .n_floors = scene_n_floors(job->scene)};
+}
+
+/* The first time attempts are counted: the second one writes the last of them. */
+static Status write_last(const TimeJob *job, SimWorker *worker, size_t i, Rows *r, Err *err)
+{
+    TRY(run_again(job, worker, i, err));
+    r->wanted = r->attempt;
+    r->attempt = 0;
+    return run_again(job, worker, i, err);
 }
 
 /* -- contacts one by one ------------------------------------------------------------------------------------------- */
@@ -66,7 +72,7 @@ static Status write_contacts(const TimeJob *job, SimWorker *worker, size_t i, FI
               "lost_j\n",
               out);
     sim_worker_contacts(worker, add_contact, &rows);
-    return run_again(job, worker, i, err);
+    return write_last(job, worker, i, &rows, err);
 }
 
 /* -- histories ----------------------------------------------------------------------------------------------------- */
@@ -96,7 +102,7 @@ static Status write_history(const TimeJob *job, SimWorker *worker, size_t i, FIL
         fputs(",kinetic_j,strain_j,damped_building_j,core_j,damped_core_j,contacts_j,input_j\n", out);
     }
     sim_worker_sample(worker, job->every_s, add_sample, &rows);
-    return run_again(job, worker, i, err);
+    return write_last(job, worker, i, &rows, err);
 }
 
 /* -- floor spectra ------------------------------------------------------------------------------------------------- */

@@ -487,8 +487,10 @@ static Status assign_text(Settings *s, const Option *o, const char *value, Err *
         return bad_data(err, "%s: is empty", o->key);
     if (strlen(value) >= OPTION_TEXT_MAX)
         return bad_data(err, "%s: is longer than %d characters", o->key, OPTION_TEXT_MAX - 1);
-    if (strpbrk(value, "\r\n") || !quotes_of(value))
-        return bad_data(err, "%s: '%.60s' cannot be kept in a settings file: it has line ends, or quotes of both kinds",
+    if (strpbrk(value, "\r\n") || is_blank(*value) || is_blank(value[strlen(value) - 1]) || !quotes_of(value))
+        return bad_data(err,
+                        "%s: '%.60s' cannot be kept in a settings file (line ends, blanks around it, ' ;', ' #' or a "
+                        "bracket beside quotes)",
                         o->key, value);
     snprintf(field_of(s, o), OPTION_TEXT_MAX, "%s", value);
     return STATUS_OK;

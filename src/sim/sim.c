@@ -562,8 +562,8 @@ static Status run_once(SimWorker *w, SceneKind kind, const Design *d, SimResult 
  * whole, then the secant's step in the logarithms of each storey: what is left, over what is assumed, falls with the
  * assumed share, at first to a power of WALLS_POWER; between -1 and 0, so that it settles where a stiffer core has
  * more. 46 simulations of bare walls took 4.6, 4.9, 5.3 and 5.2 passes with powers of -0.2, -0.4, -0.6 and -1. Where
- * contacts go on for more than twice the strong part of the motion, walls settle on that first; the last pass is whole,
- * as is the first. */
+ * contacts are followed for more than twice the strong part of the motion, walls settle on that in a first half of the
+ * passes; the first and the last pass are whole. */
 enum { WALLS_MAX = 16 };
 static const double WALLS_OFF = 0.01, WALLS_POWER = -0.4;
 
@@ -580,9 +580,9 @@ static Status settle_walls(SimWorker *w, SceneKind kind, const Design *d, SimRes
         const int is_settled = !(result->forces.core_wall_share_off > WALLS_OFF);
         if (status != STATUS_OK || result->outcome != RUN_OK || (is_settled && w->run.duration == whole_s))
             break;
-        if (pass == 0 && result->settled_s > 2 * w->scene->strong_s)
+        if (pass == 0 && w->scene->motion->n_force == 0 && result->settled_s > 2 * w->scene->strong_s)
             strong_s = w->scene->strong_s;
-        w->run.duration = is_settled || n_whole > 1 || pass + 2 == WALLS_MAX ? whole_s : strong_s;
+        w->run.duration = is_settled || n_whole > 1 || pass > WALLS_MAX / 2 ? whole_s : strong_s;
         for (int s = 0; s < result->n_floors && !is_settled && pass + 1 < WALLS_MAX; s++) {
             const double x = share[s] > 0 ? log(share[s]) : 0, left = log(result->forces.core_wall_share[s]);
             const double power = pass > 0 && x != assumed[s] ? (left - found[s]) / (x - assumed[s]) : WALLS_POWER;

@@ -28,6 +28,7 @@ export async function saved(place, is, ms = 100) {
     const name = readdirSync(place).find(is);
     if ((size = name ? statSync(join(place, name)).size : 0) && size === before) return name;
   }
+  throw new Error("nothing was saved");
 }
 
 export async function openBrowser({ program = "chromium", width = 1360, height = 900 } = {}) {
@@ -104,14 +105,15 @@ export async function openBrowser({ program = "chromium", width = 1360, height =
       }
       const { x, y, width, height } = e.getBoundingClientRect(); return { x, y, width, height }; })()`);
 
-    // A page that draws itself anew between the two halves of a click takes none: then once more. One that went away took it.
+    // A page that draws itself anew between the halves of a click takes none: then again. One that went away took it.
     async function click(selector, nth = 0) {
-      for (let tries = 0, taken = false; tries < 5 && !taken; tries++) {
+      for (let tries = 0; tries < 5; tries++) {
         const { x, y, width, height } = await boxOf(selector, nth);
-        await evaluate(`window.taken = false; document.querySelectorAll(${JSON.stringify(selector)})[${nth}].addEventListener("click", () => { window.taken = true; }, true)`);
+        await evaluate(`window.taken = false; document.querySelectorAll(${JSON.stringify(selector)})[${nth}]?.addEventListener("click", () => { window.taken = true; }, true)`);
         for (const type of ["mousePressed", "mouseReleased"]) await mouse(type, x + width / 2, y + height / 2);
-        taken = await evaluate("window.taken !== false").catch(() => true);
+        if (await evaluate("window.taken !== false").catch(() => true)) return;
       }
+      throw new Error(`${selector} takes no click`);
     }
 
     async function press(key) {

@@ -6,8 +6,7 @@ import { tmpdir } from "node:os";
 import { join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
 import { openBrowser, pause, saved, tryAll } from "./browser.mjs";
-const downloads = mkdtempSync(join(tmpdir(), "imtet-downloads-"));
-const doctored = join(downloads, "doctored.html");
+const downloads = mkdtempSync(join(tmpdir(), "imtet-downloads-")), doctored = join(downloads, "doctored.html");
 export const browser = await openBrowser();
 const page = await browser.openPage();
 

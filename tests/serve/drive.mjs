@@ -41,8 +41,7 @@ async function open(name) {
   const at = (await runs()).find((r) => r.name === name).at;
   await page.call("Page.navigate", { url: `${url}${at}/` }); await page.until("document.documentElement?.dataset.ready === 'yes'");
 }
-const { until, press, mouse, boxOf, click } = page;
-const designShown = (id) => until(`document.getElementById("drawer").dataset.id === "${id}"`);
+const { until, press, mouse, boxOf, click } = page, designShown = (id) => until(`document.getElementById("drawer").dataset.id === "${id}"`);
 
 // Drags a slider to and fro; updates that came and how long each took from the movement to the frame with its picture.
 async function dragSlider(nth, moves) {
@@ -218,8 +217,8 @@ const tried = {
     }).observe(document, { subtree: true, childList: true, attributeFilter: ["data-rows"] })` });
     await slow.call("Page.navigate", { url: `${url}${at}/` }); await slow.until("window.drawn");
     assert.match((await slow.evaluate("window.drawn")).join(), /^Loading study a: \d+ designs so far.*,true$/);
-    const html = await (await fetch(`${url}${at}/`)).text(), came = Math.max(html.indexOf("designs so far"), html.indexOf("\n", html.indexOf("\n", html.indexOf('id="rows">')) + 1)); // not packed: more than what comes
-    assert.ok(came > 0 && came <= 120 * 1024, `${came} bytes come before it`);
+    const html = await (await fetch(`${url}${at}/`)).text(), rows = html.indexOf('id="rows">'), came = Math.max(html.indexOf("designs so far"), html.indexOf("\n", html.indexOf("\n", rows) + 1)); // script and a first row, not packed
+    assert.ok(rows > 0 && html.includes("designs so far") && came <= 120 * 1024, `${came} bytes come before it`);
     await slow.until("document.documentElement?.dataset.ready === 'yes' && !document.getElementById('first')");
     console.log(`first picture after at most ${Math.round(came / 1024)} kB`);
     await page.call("Page.bringToFront");

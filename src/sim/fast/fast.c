@@ -149,32 +149,20 @@ const char *fast_kernel_name(void)
 
 FastTolerances fast_tolerances(Accuracy accuracy)
 {
+    /* clang-format off */
     static const FastTolerances TOLERANCES[] = {
-        [ACCURACY_COARSE] = {.steps_per_contact = 0.5,
-                             .solver_tolerance = 1e-2,
-                             .energy_tolerance = 3e-5,
-                             .device_error = 1e-4,
-                             .steps_max = 2e7,
-                             .peak_tolerance = 3e-3,
-                             .flexibility_left_out = 0.1,
-                             .tail_tolerance = 2e-3},
-        [ACCURACY_STANDARD] = {.steps_per_contact = 2,
-                               .solver_tolerance = 3e-5,
-                               .energy_tolerance = 2.4e-7,
-                               .device_error = 1e-6,
-                               .steps_max = 2e7,
-                               .peak_tolerance = 6e-4,
-                               .flexibility_left_out = 0.01,
-                               .tail_tolerance = 0.02,
-                               .tail_share = 0.04,
-                               .crowd = 2,
-                               .calms_down = 1},
-        [ACCURACY_FINE] = {.steps_per_contact = 80,
-                           .solver_tolerance = 1e-12,
-                           .device_error = 1e-10,
-                           .steps_max = 2e8,
-                           .peak_tolerance = 1e-6}, /* no energy tolerance, and nothing is left out */
+        [ACCURACY_COARSE] =
+            {.steps_per_contact = 0.5, .solver_tolerance = 1e-2, .energy_tolerance = 3e-5, .device_error = 1e-4,
+             .steps_max = 2e7, .peak_tolerance = 3e-3, .flexibility_left_out = 0.1, .tail_tolerance = 2e-3},
+        [ACCURACY_STANDARD] =
+            {.steps_per_contact = 2, .solver_tolerance = 3e-5, .energy_tolerance = 2.4e-7, .device_error = 1e-6,
+             .steps_max = 2e7, .peak_tolerance = 6e-4, .flexibility_left_out = 0.01, .tail_tolerance = 0.02,
+             .tail_share = 0.04, .crowd = 2, .calms_down = 1},
+        [ACCURACY_FINE] = /* no energy tolerance, and nothing is left out */
+            {.steps_per_contact = 80, .solver_tolerance = 1e-12, .device_error = 1e-10, .steps_max = 2e8,
+             .peak_tolerance = 1e-6},
     };
+    /* clang-format on */
     return TOLERANCES[accuracy];
 }
 
