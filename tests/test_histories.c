@@ -91,29 +91,31 @@ TEST(histories_of_both_engines_agree_before_the_horizon)
     }
 }
 
-TEST(a_history_of_walls_that_buckle_reaches_the_peaks_and_its_energies_add_up)
+TEST(a_history_reaches_the_peaks_and_its_energies_add_up)
 {
-    json_auto_t *o = as_json("simulate " WINDOW "--set core.wall=effective --json --every 5e-5 --history @/walls.csv");
-    OWNED(table_free) Table h = table_of("walls.csv");
-    double u = 0, drift = 0, accel = 0, input = 0, error = 0;
-    for (size_t r = 0; r < h.n_rows; r++) {
-        double parts = 0;
-        for (int j = 1; j <= FLOORS; j++) {
-            u = fmax(u, fabs(cell_of(&h, r, "floor_%02d_m", j)));
-            drift = fmax(drift, fabs(cell_of(&h, r, "drift_%02d_m", j)));
-            accel = fmax(accel, fabs(cell_of(&h, r, "accel_%02d_g", j)));
+    FOR_EACH (const char *, walls, "", "--set core.wall=effective ") {
+        json_auto_t *o = as_json("simulate " WINDOW "%s--json --every 5e-5 --history @/walls.csv", *walls);
+        OWNED(table_free) Table h = table_of("walls.csv");
+        double u = 0, drift = 0, accel = 0, input = 0, error = 0;
+        for (size_t r = 0; r < h.n_rows; r++) {
+            double parts = 0;
+            for (int j = 1; j <= FLOORS; j++) {
+                u = fmax(u, fabs(cell_of(&h, r, "floor_%02d_m", j)));
+                drift = fmax(drift, fabs(cell_of(&h, r, "drift_%02d_m", j)));
+                accel = fmax(accel, fabs(cell_of(&h, r, "accel_%02d_g", j)));
+            }
+            FOR_EACH (const char *, part, "kinetic_j", "strain_j", "damped_building_j", "core_j", "damped_core_j",
+                      "contacts_j")
+                parts += cell(&h, r, *part);
+            input = cell(&h, r, "input_j");
+            error = fmax(error, fabs(parts - input));
         }
-        FOR_EACH (const char *, part, "kinetic_j", "strain_j", "damped_building_j", "core_j", "damped_core_j",
-                  "contacts_j")
-            parts += cell(&h, r, *part);
-        input = cell(&h, r, "input_j");
-        error = fmax(error, fabs(parts - input));
+        assert_close(u, number(o, "j1_m"), 1e-6);
+        assert_close(drift, number(o, "j2_m"), 1e-6);
+        assert_close(accel, number(o, "j3_g"), 1e-2);
+        assert_less(error, 1e-12 * input);
+        assert_less(0, number(o, "j3_filtered_g"));
     }
-    assert_close(u, number(o, "j1_m"), 1e-6);
-    assert_close(drift, number(o, "j2_m"), 1e-6);
-    assert_close(accel, number(o, "j3_g"), 1e-2);
-    assert_less(error, 1e-12 * input);
-    assert_less(0, number(o, "j3_filtered_g"));
     free(output_of("simulate " SIX "--design none --history @/none.csv"));
     free(output_of("simulate " TOWER "--rigid --history @/rigid.csv --every 0.01"));
     OWNED(table_free) Table none = table_of("none.csv");

@@ -278,7 +278,8 @@ TEST(a_text_comes_back_from_a_file_as_it_was_or_is_refused)
     }
     assert_less(7000, n_kept);
     assert_true(comes_back(memset(path, 'x', sizeof path - 1)));
-    assert_false(comes_back("a\nb.csv") || comes_back("'a' \"b\" #1") || comes_back(" a"));
+    FOR_EACH (const char *, refusal, " a.csv", "a.csv ", "a\nb.csv", "'a' \"b\" #1")
+        refused(brief("motion.record=%s", *refusal), STATUS_BAD_DATA, "motion.record");
 }
 
 TEST(all_faults_of_a_file_are_listed_with_their_lines)

@@ -14,7 +14,7 @@ typedef struct {
     int letters; /* the number may also be a letter: A is 1, the last one is `most` */
 } KeyedNumber;
 
-/* x (n, at most 32) stays what it was where a key is not given. text: at most OPTION_TEXT_MAX. kind:
- * one bit, whose keys are taken. */
+/* x (n, at most 32) stays what it was where a key is not given. text: at most OPTION_TEXT_MAX.
+ * kind: one bit, whose keys are taken. */
 Status keyed_numbers(const char *setting, const char *text, unsigned kind, size_t n, const KeyedNumber keys[],
                      double x[], Err *err);

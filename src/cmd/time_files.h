@@ -1,8 +1,8 @@
 /* cmd/time_files.h -- what `imtet simulate` writes of a response over time: histories, contacts one by one, floor
  * spectra.
  *
- * Every design is simulated once more, on its own: the same simulation, to the last bit. results/README.md explains the
- * columns. Files are written whole or not at all, - is standard output.
+ * Every design is simulated again, on its own: the same simulation, to the last bit; for histories and contacts twice,
+ * since it may begin anew. results/README.md explains the columns. Files are written whole or not at all, - is stdout.
  *
  * Threads  one */
 #pragma once
